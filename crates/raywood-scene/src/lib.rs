@@ -1,0 +1,15 @@
+//! Scenes for ray tracing: what there is, what it looks like, what lights it and from where it is seen.
+
+mod camera;
+mod color;
+mod light;
+mod material;
+mod mesh;
+mod scene;
+
+pub use camera::Camera;
+pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
+pub use light::{Light, LightKind};
+pub use material::{Material, MaterialId, Pattern};
+pub use mesh::Mesh;
+pub use scene::{Background, Scene};

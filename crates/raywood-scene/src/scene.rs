@@ -1,0 +1,71 @@
+//! The scene: everything that a picture needs.
+
+use raywood::{Aabb, Spheres, Vec3};
+
+use crate::{Camera, Light, Material, MaterialId, Mesh, Rgb};
+
+/// Surfaces, materials, lights and cameras.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// What it is called: the built-in's or the file's name.
+    pub name: String,
+    /// All triangles.
+    pub mesh: Mesh,
+    /// Analytic spheres.
+    pub spheres: Spheres,
+    /// The material of each sphere.
+    pub sphere_materials: Vec<MaterialId>,
+    /// The materials that triangles and spheres name.
+    pub materials: Vec<Material>,
+    /// The lights that the file or the code gave; may be empty.
+    pub lights: Vec<Light>,
+    /// The cameras that the file or the code gave; may be empty. The first is the one to use.
+    pub cameras: Vec<Camera>,
+    /// What rays see that hit nothing.
+    pub background: Background,
+    /// What was left out or mended while loading, a line each, for the user to read.
+    pub warnings: Vec<String>,
+}
+
+/// What rays see that hit nothing: a colour that blends from the horizon up and down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Background {
+    /// Straight up (positive y).
+    pub zenith: Rgb,
+    /// At the horizon.
+    pub horizon: Rgb,
+    /// Straight down.
+    pub nadir: Rgb,
+}
+
+impl Default for Background {
+    /// A quiet studio backdrop: light at the horizon, a little bluer above, grey below.
+    fn default() -> Self {
+        Self {
+            zenith: Rgb::new(0.25, 0.33, 0.45),
+            horizon: Rgb::new(0.70, 0.74, 0.78),
+            nadir: Rgb::new(0.22, 0.22, 0.23),
+        }
+    }
+}
+
+impl Background {
+    /// The colour in a direction (of unit length).
+    pub fn color(&self, direction: Vec3) -> Rgb {
+        let (end, height) = if direction.y >= 0.0 {
+            (self.zenith, direction.y)
+        } else {
+            (self.nadir, -direction.y)
+        };
+        // The square root widens the change near the horizon, as a real sky does.
+        let blend = height.min(1.0).sqrt();
+        (1.0 - blend) * self.horizon + blend * end
+    }
+}
+
+impl Scene {
+    /// The box around everything; empty if there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        self.mesh.triangles.total_bounds().union(self.spheres.total_bounds())
+    }
+}

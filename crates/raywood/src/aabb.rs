@@ -1,0 +1,95 @@
+//! The axis-aligned bounding box.
+
+use crate::Vec3;
+
+/// An axis-aligned box, corners included. Empty when `min` exceeds `max` on any axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Aabb {
+    /// The smallest coordinates.
+    pub min: Vec3,
+    /// The largest coordinates.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The box that holds nothing: joining it with another gives the other.
+    pub const EMPTY: Self =
+        Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
+
+    /// The box with the given corners.
+    #[inline]
+    pub fn new(min: impl Into<Vec3>, max: impl Into<Vec3>) -> Self {
+        Self { min: min.into(), max: max.into() }
+    }
+
+    /// The smallest box around some points.
+    #[inline]
+    pub fn of_points(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::including)
+    }
+
+    /// The smallest box around this one and a point.
+    #[inline]
+    pub fn including(self, point: Vec3) -> Self {
+        Self { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// The smallest box around this one and another.
+    #[inline]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether the box holds no point.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
+    }
+
+    /// Whether all corners are finite.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// Whether the other box lies inside this one, touching allowed. The empty box lies in every box.
+    #[inline]
+    pub fn contains(&self, other: &Self) -> bool {
+        other.is_empty()
+            || (self.min.x <= other.min.x
+                && self.min.y <= other.min.y
+                && self.min.z <= other.min.z
+                && other.max.x <= self.max.x
+                && other.max.y <= self.max.y
+                && other.max.z <= self.max.z)
+    }
+
+    /// The lengths of the edges; negative on an axis where the box is empty.
+    #[inline]
+    pub fn extent(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// The centre. Does not overflow.
+    #[inline]
+    pub fn center(&self) -> Vec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// The length of the diagonal, zero when empty.
+    #[inline]
+    pub fn diagonal(&self) -> f32 {
+        if self.is_empty() { 0.0 } else { self.extent().length() }
+    }
+
+    /// Half the surface area, zero when empty. Ratios of areas are all that cost estimates need.
+    #[inline]
+    pub fn half_area(&self) -> f32 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let e = self.extent();
+        e.x * e.y + e.y * e.z + e.z * e.x
+    }
+}

@@ -1,0 +1,60 @@
+//! Two kinds of geometry as one.
+
+use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use crate::{Aabb, Hit, Ray};
+
+/// Two geometries under one numbering: first all primitives of `first`, then all of `second`.
+///
+/// One structure over both finds the closest hit among them, and which kind a primitive is costs one comparison.
+/// Nest it for more than two kinds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Joined<A, B> {
+    /// The geometry whose primitives come first.
+    pub first: A,
+    /// The geometry whose primitives are numbered on from those of `first`.
+    pub second: B,
+}
+
+impl<A: Geometry, B: Geometry> Joined<A, B> {
+    /// The primitive's number within the second geometry, or `None` if it is one of the first.
+    #[inline]
+    fn in_second(&self, primitive: u32) -> Option<u32> {
+        primitive.checked_sub(self.first.len() as u32)
+    }
+}
+
+impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
+    fn len(&self) -> usize {
+        self.first.len() + self.second.len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        match self.in_second(primitive) {
+            None => self.first.bounds(primitive),
+            Some(primitive) => self.second.bounds(primitive),
+        }
+    }
+
+    #[inline]
+    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
+        match self.in_second(primitive) {
+            None => self.first.intersect(primitive, ray),
+            Some(primitive) => self.second.intersect(primitive, ray),
+        }
+    }
+
+    #[inline]
+    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
+        match self.in_second(primitive) {
+            None => self.first.occludes(primitive, ray),
+            Some(primitive) => self.second.occludes(primitive, ray),
+        }
+    }
+
+    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match self.in_second(hit.primitive) {
+            None => self.first.surface_point(ray, hit),
+            Some(primitive) => self.second.surface_point(ray, &Hit { primitive, ..*hit }),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
+
+mod joined;
+mod prepared_ray;
+mod spheres;
+mod surface;
+mod triangle_mesh;
+mod watertight;
+
+pub use joined::Joined;
+pub use prepared_ray::PreparedRay;
+pub use spheres::{Spheres, SpheresError};
+pub use surface::SurfacePoint;
+pub use triangle_mesh::{MeshError, TriangleMesh};
+
+use crate::{Aabb, Hit, Ray};
+
+/// Where a ray meets one primitive: the part of a [`Hit`] that the primitive itself can tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimitiveHit {
+    /// Distance along the ray, in units of the direction's length.
+    pub t: f32,
+    /// First surface coordinate.
+    pub u: f32,
+    /// Second surface coordinate.
+    pub v: f32,
+}
+
+/// A numbered set of primitives that can be bounded and intersected: all that an acceleration structure asks for.
+///
+/// Implement it for a type of your own and every structure, traversal and batch works with it. The primitives must
+/// not change while a structure is built over them.
+pub trait Geometry: Sync {
+    /// How many primitives there are; they are numbered from 0. Structures take at most 2^31.
+    fn len(&self) -> usize;
+
+    /// Whether there are no primitives at all.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A box around the primitive. It must be finite and must hold every point that [`intersect`](Self::intersect)
+    /// can report.
+    fn bounds(&self, primitive: u32) -> Aabb;
+
+    /// The nearest hit of the ray with this primitive at `ray.t_min <= t < ray.t_max`, if any.
+    ///
+    /// `t` must be a number and inside the interval; a caller may rely on it.
+    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit>;
+
+    /// Whether the ray meets this primitive anywhere in its interval. Must agree with [`intersect`](Self::intersect).
+    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
+        self.intersect(primitive, ray).is_some()
+    }
+
+    /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
+    ///
+    /// `hit` must be an answer that this geometry gave for `ray`.
+    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint;
+}
+
+impl<G: Geometry + ?Sized> Geometry for &G {
+    fn len(&self) -> usize {
+        (**self).len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        (**self).bounds(primitive)
+    }
+
+    #[inline]
+    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
+        (**self).intersect(primitive, ray)
+    }
+
+    #[inline]
+    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
+        (**self).occludes(primitive, ray)
+    }
+
+    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        (**self).surface_point(ray, hit)
+    }
+}

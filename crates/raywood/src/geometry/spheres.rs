@@ -1,0 +1,136 @@
+//! Analytic spheres.
+
+use std::fmt;
+
+use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use crate::{Aabb, Hit, Ray, Vec3};
+
+/// Spheres given by centre and radius, hit from outside and from inside. Checked once, when made.
+///
+/// Of a hit, `u` and `v` are zero: the point follows from the ray. Computed in double precision, so that small
+/// spheres far away stay round.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spheres {
+    spheres: Vec<(Vec3, f32)>,
+}
+
+/// Why an array does not describe spheres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpheresError {
+    /// The first sphere that is wrong.
+    pub sphere: usize,
+    /// Its centre.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+}
+
+impl fmt::Display for SpheresError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sphere, center, radius } = self;
+        let [x, y, z] = center.to_array();
+        write!(
+            f,
+            "sphere {sphere} at ({x}, {y}, {z}) has radius {radius}: the centre must be finite, the radius finite and \
+             not negative"
+        )
+    }
+}
+
+impl std::error::Error for SpheresError {}
+
+impl Spheres {
+    /// Spheres from centres and radii. A radius of zero is legal and never hit.
+    ///
+    /// # Errors
+    ///
+    /// A centre or extent that is NaN or infinite, a radius that is negative.
+    pub fn new(spheres: Vec<(Vec3, f32)>) -> Result<Self, SpheresError> {
+        match spheres.iter().position(|&(center, radius)| {
+            !(radius >= 0.0 && sphere_bounds(center, radius).is_finite())
+        }) {
+            Some(sphere) => {
+                let (center, radius) = spheres[sphere];
+                Err(SpheresError { sphere, center, radius })
+            }
+            None => Ok(Self { spheres }),
+        }
+    }
+
+    /// The centres and radii.
+    pub fn as_slice(&self) -> &[(Vec3, f32)] {
+        &self.spheres
+    }
+
+    /// The box around all spheres.
+    pub fn total_bounds(&self) -> Aabb {
+        self.spheres.iter().map(|&(c, r)| sphere_bounds(c, r)).fold(Aabb::EMPTY, Aabb::union)
+    }
+}
+
+/// The box around a sphere, rounded outwards.
+fn sphere_bounds(center: Vec3, radius: f32) -> Aabb {
+    let down = |x: f32| (x - radius).next_down();
+    let up = |x: f32| (x + radius).next_up();
+    Aabb {
+        min: Vec3::new(down(center.x), down(center.y), down(center.z)),
+        max: Vec3::new(up(center.x), up(center.y), up(center.z)),
+    }
+}
+
+impl Geometry for Spheres {
+    fn len(&self) -> usize {
+        self.spheres.len()
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        let (center, radius) = self.spheres[primitive as usize];
+        sphere_bounds(center, radius)
+    }
+
+    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
+        let (center, radius) = self.spheres[primitive as usize];
+        let double = |v: Vec3| v.to_array().map(f64::from);
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (o, d, c, r) =
+            (double(ray.origin), double(ray.direction), double(center), f64::from(radius));
+
+        // Start from the point of the ray nearest the centre: the discriminant is then a difference of small numbers
+        // however far away the sphere is (Haines et al., Ray Tracing Gems, chapter 7).
+        let to_center = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
+        let dd = dot(d, d);
+        let nearest = dot(to_center, d) / dd;
+        let offset = [0, 1, 2].map(|i| to_center[i] - nearest * d[i]);
+        let remaining = r * r - dot(offset, offset);
+        if !(remaining > 0.0) {
+            return None;
+        }
+        let half_chord = (remaining / dd).sqrt();
+
+        // The near crossing if it counts, else the far one: the ray may start inside.
+        let t = [nearest - half_chord, nearest + half_chord]
+            .map(|t| t as f32)
+            .into_iter()
+            .find(|&t| ray.accepts(t))?;
+        Some(PrimitiveHit { t, u: 0.0, v: 0.0 })
+    }
+
+    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let (center, radius) = self.spheres[hit.primitive as usize];
+
+        // The point on the ray is as wrong as the ray is long; pushed onto the sphere it is as exact as the radius.
+        let (o, d, c) = (ray.origin.to_array(), ray.direction.to_array(), center.to_array());
+        let n = [0, 1, 2]
+            .map(|i| f64::from(o[i]) + f64::from(hit.t) * f64::from(d[i]) - f64::from(c[i]));
+        let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        let normal = Vec3::from(n.map(|x| (x / length) as f32));
+        let position = Vec3::from(
+            [0, 1, 2].map(|i| (f64::from(c[i]) + n[i] / length * f64::from(radius)) as f32),
+        );
+        SurfacePoint {
+            position,
+            normal,
+            clearance: 4.0 * f32::EPSILON * (center.abs().max_element() + radius),
+        }
+    }
+}

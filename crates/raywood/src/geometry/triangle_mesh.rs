@@ -1,0 +1,175 @@
+//! The indexed triangle mesh.
+
+use std::fmt;
+
+use super::watertight::intersect_triangle;
+use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use crate::{Aabb, Hit, Ray, Vec3};
+
+/// Triangles as triples of indices into an array of vertex positions. Checked once, when made: every index is in
+/// range and every position finite, so no query has to ask again.
+///
+/// Degenerate triangles (a repeated vertex, no area) are legal and never hit. Triangles are hit from both sides,
+/// edges and vertices included, and no ray slips between two that share an edge (Woop, Benthin and Wald 2013).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Why arrays are not a triangle mesh.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// An index points past the end of the positions.
+    IndexOutOfRange {
+        /// The first such triangle.
+        triangle: usize,
+        /// Its offending index.
+        index: u32,
+        /// How many positions there are.
+        positions: usize,
+    },
+    /// Some positions are NaN or infinite.
+    NotFinite {
+        /// The first such position.
+        first: usize,
+        /// How many there are in all.
+        count: usize,
+    },
+    /// More than 2^31 triangles.
+    TooManyTriangles {
+        /// How many there are.
+        triangles: usize,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::IndexOutOfRange { triangle, index, positions } => {
+                write!(
+                    f,
+                    "triangle {triangle} uses vertex {index}, but there are {positions} vertices (0 is the first)"
+                )
+            }
+            Self::NotFinite { first, count } => {
+                write!(
+                    f,
+                    "{count} vertices are NaN or infinite, the first of them is vertex {first}"
+                )
+            }
+            Self::TooManyTriangles { triangles } => {
+                write!(f, "{triangles} triangles, but a mesh holds at most 2147483648")
+            }
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+impl TriangleMesh {
+    /// A mesh from vertex positions and, per triangle, three indices into them.
+    ///
+    /// # Errors
+    ///
+    /// An index out of range, a position that is NaN or infinite, or more than 2^31 triangles.
+    pub fn new<P: Into<Vec3>>(
+        positions: Vec<P>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
+        if triangles.len() > 1 << 31 {
+            return Err(MeshError::TooManyTriangles { triangles: triangles.len() });
+        }
+
+        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
+        let count = positions.iter().filter(|p| !p.is_finite()).count();
+        if count > 0 {
+            let first = positions.iter().position(|p| !p.is_finite()).unwrap_or_default();
+            return Err(MeshError::NotFinite { first, count });
+        }
+
+        let in_range = |index: u32| (index as usize) < positions.len();
+        if let Some(triangle) = triangles.iter().position(|t| !t.iter().all(|&i| in_range(i))) {
+            let index = triangles[triangle].into_iter().find(|&i| !in_range(i)).unwrap_or_default();
+            return Err(MeshError::IndexOutOfRange { triangle, index, positions: positions.len() });
+        }
+        Ok(Self { positions, triangles })
+    }
+
+    /// The vertex positions.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// The triangles: three indices into the positions each.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of a triangle.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such triangle.
+    #[inline]
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|index| self.positions[index as usize])
+    }
+
+    /// The box around all triangles (vertices that no triangle uses do not count).
+    pub fn total_bounds(&self) -> Aabb {
+        Aabb::of_points(
+            self.triangles.iter().flatten().map(|&index| self.positions[index as usize]),
+        )
+    }
+}
+
+impl Geometry for TriangleMesh {
+    fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    #[inline]
+    fn bounds(&self, primitive: u32) -> Aabb {
+        Aabb::of_points(self.corners(primitive))
+    }
+
+    #[inline]
+    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
+        let [p0, p1, p2] = self.corners(primitive);
+        intersect_triangle(ray, p0, p1, p2)
+    }
+
+    fn surface_point(&self, _ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let [p0, p1, p2] = self.corners(hit.primitive);
+        let position = (1.0 - hit.u - hit.v) * p0 + hit.u * p1 + hit.v * p2;
+
+        // Rounding scales with the coordinates (the position) and with the triangle's size (the next ray's test of
+        // the same triangle); `docs/numerics.md` derives the factor.
+        let coordinates = p0.abs().max(p1.abs()).max(p2.abs());
+        let (edge1, edge2) = (p1 - p0, p2 - p0);
+        let size = edge1.abs().max(edge2.abs());
+        SurfacePoint {
+            position,
+            normal: unit_normal(edge1, edge2),
+            clearance: CLEARANCE * (coordinates.max_element() + size.max_element()),
+        }
+    }
+}
+
+/// The clearance of a spawned ray per unit of coordinate and triangle size: 32 units in the last place.
+const CLEARANCE: f32 = 16.0 * f32::EPSILON;
+
+/// The unit normal of a triangle from two of its edges, zero if it has no area. In double precision, where the
+/// product of two tiny or huge edges neither vanishes nor overflows and slivers keep their direction.
+fn unit_normal(edge1: Vec3, edge2: Vec3) -> Vec3 {
+    let [a, b] = [edge1, edge2].map(|e| e.to_array().map(f64::from));
+    let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+    if length > 0.0 && length.is_finite() {
+        Vec3::from(n.map(|x| (x / length) as f32))
+    } else {
+        Vec3::ZERO
+    }
+}

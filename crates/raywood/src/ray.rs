@@ -1,0 +1,66 @@
+//! The ray: an origin, a direction and the interval of distances that count.
+
+use crate::Vec3;
+
+/// A ray `origin + t * direction` for `t_min <= t < t_max`.
+///
+/// Distances `t` are in units of the direction's length, which need not be one. A ray that is not
+/// [valid](Ray::is_valid) hits nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Ray {
+    /// Where the ray starts.
+    pub origin: Vec3,
+    /// The smallest distance that counts as a hit.
+    pub t_min: f32,
+    /// Where it goes; any length but zero.
+    pub direction: Vec3,
+    /// The distance from which on hits no longer count; may be infinite.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// The ray from `origin` along `direction`, `0 <= t < infinity`.
+    #[inline]
+    pub fn new(origin: impl Into<Vec3>, direction: impl Into<Vec3>) -> Self {
+        Self {
+            origin: origin.into(),
+            t_min: 0.0,
+            direction: direction.into(),
+            t_max: f32::INFINITY,
+        }
+    }
+
+    /// The ray from one point to another: `t` is 0 at `from` and 1 at `to`, which itself no longer counts.
+    #[inline]
+    pub fn between(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
+        let from = from.into();
+        Self { origin: from, t_min: 0.0, direction: to.into() - from, t_max: 1.0 }
+    }
+
+    /// The same ray over another interval, `t_min <= t < t_max`.
+    #[inline]
+    pub fn with_interval(self, t_min: f32, t_max: f32) -> Self {
+        Self { t_min, t_max, ..self }
+    }
+
+    /// The point at distance `t`.
+    #[inline]
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + t * self.direction
+    }
+
+    /// Whether the ray can hit anything: origin and direction finite, the direction's largest coordinate at least
+    /// [`Ray::SHORTEST_DIRECTION`], the interval free of NaN and not empty.
+    #[inline]
+    pub fn is_valid(&self) -> bool {
+        let largest = self.direction.abs().max_element();
+        self.origin.is_finite()
+            && self.direction.is_finite()
+            && largest >= Self::SHORTEST_DIRECTION
+            && self.t_min < self.t_max
+    }
+
+    /// Directions shorter than this count as zero: their reciprocal would overflow. It is the smallest normal number.
+    pub const SHORTEST_DIRECTION: f32 = f32::MIN_POSITIVE;
+}
