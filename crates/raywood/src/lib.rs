@@ -1,16 +1,63 @@
 //! Ray tracing acceleration structures and ray queries: fast, watertight, deterministic.
+//!
+//! ```
+//! use raywood::{Bvh, Ray, TriangleMesh};
+//!
+//! let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+//! let mesh = TriangleMesh::new(positions, vec![[0, 1, 2], [1, 3, 2]])?;      // checked once
+//! let bvh = Bvh::build(&mesh)?;                                              // good defaults
+//!
+//! let ray = Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]);
+//! if let Some(hit) = bvh.intersect(&ray) {                                   // the closest hit
+//!     let point = bvh.surface_point(&ray, &hit);
+//!     let light = [5.0, 5.0, 5.0];
+//!     let lit = !bvh.occluded(&point.spawn_towards(light.into()));           // any blocker, no epsilon to choose
+//!     println!("triangle {} at distance {}, lit: {lit}", hit.primitive, hit.t);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! - [`TriangleMesh`] and [`Spheres`] are geometry, your own types can be through [`Geometry`], and [`Joined`] puts two kinds
+//!   into one tree.
+//! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores.
+//! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked.
+//!
+//! # Contracts
+//!
+//! - Hits lie at `t_min <= t < t_max`, in units of the direction's length; directions need not be normalised.
+//! - At exactly equal `t` the lowest primitive number wins.
+//! - Watertight: no ray slips between two triangles that share an edge or vertex.
+//! - No input panics, hangs or gives a hit that is not there: meshes with NaN or infinite vertices are refused, rays with NaN miss,
+//!   empty meshes are legal.
+//! - Trees and answers do not depend on the number of threads. Work runs in the caller's rayon pool (feature `rayon`, on by
+//!   default) or on the calling thread.
 
 mod aabb;
+mod build;
+mod bvh;
+mod error;
 mod geometry;
 mod hit;
+mod parallel;
 mod ray;
+mod stats;
+mod structures;
+mod traverse;
+mod validate;
 mod vec3;
 
 pub use aabb::Aabb;
+pub use build::BuildOptions;
+pub use bvh::Bvh;
+pub use error::BuildError;
 pub use geometry::{
     Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, Spheres, SpheresError, SurfacePoint,
     TriangleMesh,
 };
 pub use hit::Hit;
 pub use ray::Ray;
+pub use stats::TreeStats;
+pub use structures::{Bvh2, Node};
+pub use traverse::{Counts, Probe};
+pub use validate::ValidationError;
 pub use vec3::Vec3;

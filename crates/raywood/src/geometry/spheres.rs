@@ -102,7 +102,7 @@ impl Geometry for Spheres {
         let nearest = dot(to_center, d) / dd;
         let offset = [0, 1, 2].map(|i| to_center[i] - nearest * d[i]);
         let remaining = r * r - dot(offset, offset);
-        if !(remaining > 0.0) {
+        if remaining <= 0.0 || remaining.is_nan() {
             return None;
         }
         let half_chord = (remaining / dd).sqrt();

@@ -1,0 +1,167 @@
+//! The recursion that every top-down builder shares: in place like quicksort, over an array of primitive numbers that
+//! is permuted while the primitives themselves stay where they are.
+
+use crate::structures::{Bvh2, MAX_DEPTH, Node};
+use crate::{Aabb, BuildError, Geometry};
+
+/// Sets larger than this build their two halves in parallel.
+const PARALLEL_SUBTREES: usize = 2048;
+
+/// Chooses how a set of primitives is divided: the part in which top-down builders differ.
+pub(crate) trait Splitter: Sync {
+    /// Permutes `indices` so that the left child's primitives come first and tells how many these are and the bounds of
+    /// both children, or says by `None` that the set should be a leaf.
+    ///
+    /// The answer must depend on the arguments alone, never on timing or threads.
+    fn split(&self, bounds: &[Aabb], indices: &mut [u32], node_bounds: &Aabb) -> Option<Split>;
+}
+
+/// A set of primitives divided in two.
+pub(crate) struct Split {
+    /// How many primitives go left; neither none nor all.
+    pub(crate) left_count: usize,
+    /// The box around them.
+    pub(crate) left: Aabb,
+    /// The box around the others.
+    pub(crate) right: Aabb,
+}
+
+/// The bounds of every primitive, checked.
+pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<Aabb>, BuildError> {
+    let primitives = geometry.len();
+    if primitives > BuildError::MAX_PRIMITIVES {
+        return Err(BuildError::TooManyPrimitives { primitives });
+    }
+    let bounds: Vec<Aabb> =
+        crate::parallel::map(primitives, |primitive| geometry.bounds(primitive as u32));
+    match bounds.iter().position(|b| b.is_empty() || !b.is_finite()) {
+        Some(bad) => Err(BuildError::BadBounds { primitive: bad as u32, bounds: bounds[bad] }),
+        None => Ok(bounds),
+    }
+}
+
+/// Builds the tree over primitives with the given (checked) bounds. The same for any number of threads.
+pub(crate) fn build<S: Splitter>(bounds: &[Aabb], splitter: &S) -> Bvh2 {
+    let n = bounds.len();
+    let mut indices: Vec<u32> = (0..n as u32).collect();
+    if n == 0 {
+        return Bvh2::from_parts(Vec::new(), indices);
+    }
+
+    // A set of n primitives has at most 2n-1 nodes. Each subtree gets its own stretch of the pool of that size, so that
+    // where a node lies follows from the counts and not from which thread came first.
+    let root_bounds = crate::parallel::fold(bounds, Aabb::EMPTY, |a, b| a.union(*b), Aabb::union);
+    let mut pool = vec![Node::leaf(root_bounds, 0, n as u32); 2 * n - 1];
+    let (root, descendants) = pool.split_at_mut(1);
+    subdivide(
+        bounds,
+        splitter,
+        &mut root[0],
+        Subtree { descendants, first_node: 1, indices: &mut indices, first: 0 },
+        1,
+    );
+    Bvh2::from_parts(close_gaps(&pool), indices)
+}
+
+/// What belongs to one subtree while it is built.
+struct Subtree<'a> {
+    /// Room for all nodes below its root.
+    descendants: &'a mut [Node],
+    /// The number of the first of them in the pool.
+    first_node: usize,
+    /// The numbers of its primitives.
+    indices: &'a mut [u32],
+    /// Where these start in the array of all.
+    first: usize,
+}
+
+/// Divides `node`, a leaf over all of the subtree's primitives, as long as the splitter wants to.
+fn subdivide<S: Splitter>(
+    bounds: &[Aabb],
+    splitter: &S,
+    node: &mut Node,
+    subtree: Subtree<'_>,
+    depth: usize,
+) {
+    let Subtree { descendants, first_node, indices, first } = subtree;
+    let count = indices.len();
+    if count == 1 {
+        return;
+    }
+
+    // Keep the depth within the traversal's stack: from here on only halving can.
+    let halvings = count.next_power_of_two().trailing_zeros() as usize;
+    let split = if depth + halvings >= MAX_DEPTH {
+        Some(split_at_median(bounds, indices))
+    } else {
+        splitter.split(bounds, indices, &node.bounds())
+    };
+    let Some(Split { left_count, left, right }) = split else { return };
+    debug_assert!(0 < left_count && left_count < count);
+
+    // The children lie side by side at the front of the subtree's room, the left one's descendants follow, then the right
+    // one's.
+    *node = Node::interior(node.bounds(), first_node as u32);
+    let (children, rest) = descendants.split_at_mut(2);
+    let (left_node, right_node) = children.split_at_mut(1);
+    left_node[0] = Node::leaf(left, first as u32, left_count as u32);
+    right_node[0] = Node::leaf(right, (first + left_count) as u32, (count - left_count) as u32);
+    let (left_room, right_room) = rest.split_at_mut(2 * left_count - 2);
+    let (left_indices, right_indices) = indices.split_at_mut(left_count);
+    let below_left = Subtree {
+        descendants: left_room,
+        first_node: first_node + 2,
+        indices: left_indices,
+        first,
+    };
+    let below_right = Subtree {
+        descendants: right_room,
+        first_node: first_node + 2 * left_count,
+        indices: right_indices,
+        first: first + left_count,
+    };
+    crate::parallel::join_if(
+        count > PARALLEL_SUBTREES,
+        || subdivide(bounds, splitter, &mut left_node[0], below_left, depth + 1),
+        || subdivide(bounds, splitter, &mut right_node[0], below_right, depth + 1),
+    );
+}
+
+/// Halves a set by the order of its centroids along the axis on which these spread most. Always succeeds.
+pub(crate) fn split_at_median(bounds: &[Aabb], indices: &mut [u32]) -> Split {
+    let center = |&i: &u32| bounds[i as usize].center();
+    let axis = Aabb::of_points(indices.iter().map(center)).extent().max_axis();
+    let left_count = indices.len() / 2;
+    indices.select_nth_unstable_by(left_count, |a, b| {
+        center(a)[axis].total_cmp(&center(b)[axis]).then_with(|| a.cmp(b))
+    });
+    let bounds_of =
+        |part: &[u32]| part.iter().fold(Aabb::EMPTY, |a, &i| a.union(bounds[i as usize]));
+    Split {
+        left_count,
+        left: bounds_of(&indices[..left_count]),
+        right: bounds_of(&indices[left_count..]),
+    }
+}
+
+/// Copies the reachable nodes of a pool in depth-first order, pair by pair, without the room that leaves of several
+/// primitives left unused.
+fn close_gaps(pool: &[Node]) -> Vec<Node> {
+    let mut nodes = Vec::with_capacity(pool.len());
+    nodes.push(pool[0]);
+    // Parents whose children are still to be copied, by their new number.
+    let mut pending = vec![0usize];
+    while let Some(parent) = pending.pop() {
+        let Node { left_first, .. } = nodes[parent];
+        if nodes[parent].is_leaf() {
+            continue;
+        }
+        let left = nodes.len();
+        nodes[parent].left_first = left as u32;
+        nodes.extend_from_slice(&pool[left_first as usize..left_first as usize + 2]);
+        pending.push(left + 1);
+        pending.push(left);
+    }
+    nodes.shrink_to_fit();
+    nodes
+}

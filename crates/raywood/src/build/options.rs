@@ -1,0 +1,38 @@
+//! What a caller can choose about a build.
+
+/// How to build a tree. The defaults are good; start from them:
+///
+/// ```
+/// let options = raywood::BuildOptions { max_leaf_size: 4, ..Default::default() };
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// Into how many bins the centroids are sorted per axis when a split is chosen, 2 to 64. More bins find slightly better
+    /// splits and take longer.
+    pub bins: usize,
+    /// The most primitives a leaf may hold, at least 1. Larger sets are split even if the cost model would not.
+    pub max_leaf_size: usize,
+    /// The estimated cost of visiting a node (`C_aabb`).
+    pub node_cost: f32,
+    /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
+    pub primitive_cost: f32,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self { bins: 16, max_leaf_size: 8, node_cost: 1.0, primitive_cost: 1.0 }
+    }
+}
+
+impl BuildOptions {
+    /// The options with every value inside its documented range.
+    pub(crate) fn clamped(&self) -> Self {
+        let cost = |c: f32| if c.is_finite() && c > 0.0 { c } else { 1.0 };
+        Self {
+            bins: self.bins.clamp(2, super::sah_binned::MAX_BINS),
+            max_leaf_size: self.max_leaf_size.max(1),
+            node_cost: cost(self.node_cost),
+            primitive_cost: cost(self.primitive_cost),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The facade: a geometry and the tree over it, with every query.
+
+use crate::parallel;
+use crate::traverse::{closest::closest, occluded::occluded};
+use crate::{
+    BuildError, BuildOptions, Bvh2, Geometry, Hit, Probe, Ray, SurfacePoint, TreeStats,
+    ValidationError,
+};
+
+/// A bounding volume hierarchy over a geometry: what most users need.
+///
+/// It owns its geometry, or borrows it when built over a reference:
+///
+/// ```
+/// use raywood::{Bvh, Ray, TriangleMesh};
+///
+/// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriangleMesh::new(positions, vec![[0, 1, 2]])?;
+/// let bvh = Bvh::build(&mesh)?;
+///
+/// let hit = bvh.intersect(&Ray::new([0.25, 0.5, 1.0], [0.0, 0.0, -1.0])).expect("the ray hits");
+/// assert_eq!((hit.primitive, hit.t, hit.u, hit.v), (0, 1.0, 0.25, 0.5));
+/// assert!(!bvh.occluded(&Ray::between([0.25, 0.5, 1.0], [0.25, 0.5, 0.5])));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bvh<G> {
+    geometry: G,
+    tree: Bvh2,
+}
+
+impl<G: Geometry> Bvh<G> {
+    /// Builds a tree over the geometry with good defaults. O(N log N), in parallel in the caller's rayon pool; the same tree for any
+    /// number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Too many primitives, or (from a geometry of your own) one whose box is empty or not finite.
+    pub fn build(geometry: G) -> Result<Self, BuildError> {
+        Self::build_with(geometry, &BuildOptions::default())
+    }
+
+    /// Builds a tree with the given options.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build).
+    pub fn build_with(geometry: G, options: &BuildOptions) -> Result<Self, BuildError> {
+        let tree = Bvh2::build(&geometry, options)?;
+        Ok(Self { geometry, tree })
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    /// The tree.
+    pub fn tree(&self) -> &Bvh2 {
+        &self.tree
+    }
+
+    /// The closest hit at `t_min <= t < t_max`; of equally near ones that with the lowest primitive number.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.intersect_probed(ray, &mut ())
+    }
+
+    /// Whether the ray hits anything at `t_min <= t < t_max`. Faster than [`intersect`](Self::intersect): it stops at the
+    /// first hit it finds.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_probed(ray, &mut ())
+    }
+
+    /// As [`intersect`](Self::intersect), telling a probe what is tested.
+    #[inline]
+    pub fn intersect_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> Option<Hit> {
+        closest(&self.tree, &self.geometry, ray, probe)
+    }
+
+    /// As [`occluded`](Self::occluded), telling a probe what is tested.
+    #[inline]
+    pub fn occluded_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> bool {
+        occluded(&self.tree, &self.geometry, ray, probe)
+    }
+
+    /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool. Answers as the single form does.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "as many hits as rays");
+        parallel::fill(rays, hits, |ray| self.intersect(ray));
+    }
+
+    /// [`occluded`](Self::occluded) for many rays, over all cores of the caller's rayon pool. Answers as the single form does.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
+        parallel::fill(rays, occluded, |ray| self.occluded(ray));
+    }
+
+    /// The point that a ray hit, from which the next ray can be spawned. `hit` must be this tree's answer to `ray`.
+    #[inline]
+    pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.geometry.surface_point(ray, hit)
+    }
+
+    /// Counts, depth, memory and quality of the tree. O(N).
+    pub fn stats(&self) -> TreeStats {
+        TreeStats::of(&self.tree, &BuildOptions::default())
+    }
+
+    /// Checks every invariant of the tree against the geometry. O(N); for tests and after changes.
+    ///
+    /// # Errors
+    ///
+    /// The first invariant that does not hold.
+    pub fn validate(&self) -> Result<(), ValidationError> {
+        self.tree.validate(&self.geometry)
+    }
+}

@@ -1,0 +1,61 @@
+//! The few parallel forms that builds and batches use: in the caller's rayon pool with the feature `rayon`, on the calling
+//! thread without. Every one gives the same result for any number of threads.
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// How many items a task handles at least: enough that handing it out costs nothing in comparison.
+const GRAIN: usize = 4096;
+
+/// Runs both closures, in parallel if `parallel` holds.
+pub(crate) fn join_if(parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    #[cfg(feature = "rayon")]
+    if parallel {
+        rayon::join(a, b);
+        return;
+    }
+    let _ = parallel;
+    a();
+    b();
+}
+
+/// The results of `f` for 0 to `n-1`, in order.
+pub(crate) fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    return (0..n).into_par_iter().with_min_len(GRAIN).map(f).collect();
+    #[cfg(not(feature = "rayon"))]
+    (0..n).map(f).collect()
+}
+
+/// Folds a slice in pieces and merges these; `merge` and `fold` must not care about order.
+pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
+    items: &[T],
+    start: A,
+    step: impl Fn(A, &T) -> A + Sync,
+    merge: impl Fn(A, A) -> A + Sync,
+) -> A {
+    #[cfg(feature = "rayon")]
+    if items.len() > 2 * GRAIN {
+        return items
+            .par_chunks(GRAIN)
+            .map(|chunk| chunk.iter().fold(start.clone(), &step))
+            .reduce(|| start.clone(), &merge);
+    }
+    let _ = (merge, GRAIN);
+    items.iter().fold(start, step)
+}
+
+/// Writes `f` of each input to the output beside it. Both slices have the same length.
+pub(crate) fn fill<I: Sync, O: Send>(inputs: &[I], outputs: &mut [O], f: impl Fn(&I) -> O + Sync) {
+    debug_assert_eq!(inputs.len(), outputs.len());
+    #[cfg(feature = "rayon")]
+    inputs
+        .par_iter()
+        .zip_eq(outputs)
+        .with_min_len(256)
+        .for_each(|(input, output)| *output = f(input));
+    #[cfg(not(feature = "rayon"))]
+    for (input, output) in inputs.iter().zip(outputs) {
+        *output = f(input);
+    }
+}

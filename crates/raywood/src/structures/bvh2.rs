@@ -1,0 +1,109 @@
+//! The lecture's tree: a binary bounding volume hierarchy of 32-byte nodes in one pool.
+
+use crate::build::{driver, sah_binned::BinnedSah};
+use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3};
+
+/// A node of 32 bytes: half a cache line, so that two children, which lie side by side, are 64 bytes.
+///
+/// `count` tells what it is. An interior node has `count == 0` and its children are the nodes `left_first` and
+/// `left_first + 1`; a leaf holds the `count` primitives whose numbers stand in
+/// `primitive_indices[left_first..left_first + count]`.
+///
+/// An earlier form with separate `left`, `right`, `first`, `count` and a leaf flag takes 44 bytes: the children's
+/// adjacency saves one index, and `count` the flag and the second meaning of `left_first` another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct Node {
+    /// The smallest coordinates of the box.
+    pub min: Vec3,
+    /// The left child's number, or the leaf's first place in the primitive indices.
+    pub left_first: u32,
+    /// The largest coordinates of the box.
+    pub max: Vec3,
+    /// The number of primitives of a leaf; 0 in an interior node.
+    pub count: u32,
+}
+
+const _: () = assert!(size_of::<Node>() == 32);
+
+impl Node {
+    /// A leaf over `count` primitives from place `first` on.
+    #[inline]
+    pub(crate) fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
+        Self { min: bounds.min, left_first: first, max: bounds.max, count }
+    }
+
+    /// An interior node with children `left` and `left + 1`.
+    #[inline]
+    pub(crate) fn interior(bounds: Aabb, left: u32) -> Self {
+        Self { min: bounds.min, left_first: left, max: bounds.max, count: 0 }
+    }
+
+    /// Whether this is a leaf.
+    #[inline]
+    pub fn is_leaf(&self) -> bool {
+        self.count > 0
+    }
+
+    /// The node's box.
+    #[inline]
+    pub fn bounds(&self) -> Aabb {
+        Aabb { min: self.min, max: self.max }
+    }
+}
+
+/// A binary bounding volume hierarchy: nodes in one pool, children side by side, primitives through an index array.
+///
+/// It knows boxes and primitive numbers, not the geometry, which every query is given: see [`Bvh`](crate::Bvh) for the two
+/// together. Node 0 is the root; the tree of an empty geometry has no node. At most `2N-1` nodes, at most 64 levels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bvh2 {
+    nodes: Vec<Node>,
+    primitive_indices: Vec<u32>,
+}
+
+impl Bvh2 {
+    /// Builds the tree with the binned surface area heuristic. O(N log N) time, in parallel in the caller's rayon pool; the same
+    /// tree for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Too many primitives, or one whose box is empty or not finite.
+    pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
+        let bounds = driver::primitive_bounds(geometry)?;
+        Ok(driver::build(&bounds, &BinnedSah::new(options)))
+    }
+
+    /// A tree from nodes and indices that a builder made.
+    pub(crate) fn from_parts(nodes: Vec<Node>, primitive_indices: Vec<u32>) -> Self {
+        Self { nodes, primitive_indices }
+    }
+
+    /// All nodes; the first is the root.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The primitives' numbers in the order of the leaves.
+    pub fn primitive_indices(&self) -> &[u32] {
+        &self.primitive_indices
+    }
+
+    /// The box around everything; empty if there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, Node::bounds)
+    }
+
+    /// The primitives' numbers of a leaf.
+    #[inline]
+    pub(crate) fn leaf_primitives(&self, leaf: &Node) -> &[u32] {
+        &self.primitive_indices[leaf.left_first as usize..][..leaf.count as usize]
+    }
+
+    /// The two children of an interior node.
+    #[inline]
+    pub(crate) fn children(&self, interior: &Node) -> [&Node; 2] {
+        let pair = &self.nodes[interior.left_first as usize..][..2];
+        [&pair[0], &pair[1]]
+    }
+}

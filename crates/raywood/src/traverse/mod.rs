@@ -1,0 +1,10 @@
+//! Traversals of the binary tree, one question per file. Written once: generic over the geometry and over a probe
+//! that counts what happens and costs nothing when absent.
+
+pub(crate) mod closest;
+pub(crate) mod occluded;
+mod probe;
+mod slab;
+mod stack;
+
+pub use probe::{Counts, Probe};
