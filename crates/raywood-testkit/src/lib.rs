@@ -1,1 +1,26 @@
-//! x
+//! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays that look for trouble,
+//! pseudo-random numbers, image comparison. Not published.
+
+pub mod image;
+pub mod nasty;
+pub mod oracle;
+pub mod rays;
+mod rng;
+pub mod shapes;
+
+pub use rng::Rng;
+
+use std::path::{Path, PathBuf};
+
+/// The folder of real test models: `$RAYWOOD_TEST_SCENES`, or `None` (said on stderr) where it is not set or does not exist.
+pub fn test_scenes() -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os("RAYWOOD_TEST_SCENES").map(PathBuf::from) else {
+        eprintln!("skipped: set RAYWOOD_TEST_SCENES to the folder of test models to run this");
+        return None;
+    };
+    if !Path::new(&folder).is_dir() {
+        eprintln!("skipped: RAYWOOD_TEST_SCENES={} is not a folder", folder.display());
+        return None;
+    }
+    Some(folder)
+}

@@ -43,14 +43,6 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
-    #[inline]
-    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
-        match self.in_second(primitive) {
-            None => self.first.occludes(primitive, ray),
-            Some(primitive) => self.second.occludes(primitive, ray),
-        }
-    }
-
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         match self.in_second(hit.primitive) {
             None => self.first.surface_point(ray, hit),

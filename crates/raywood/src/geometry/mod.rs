@@ -48,11 +48,6 @@ pub trait Geometry: Sync {
     /// `t` must be a number and inside the interval; a caller may rely on it.
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit>;
 
-    /// Whether the ray meets this primitive anywhere in its interval. Must agree with [`intersect`](Self::intersect).
-    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
-        self.intersect(primitive, ray).is_some()
-    }
-
     /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
     ///
     /// `hit` must be an answer that this geometry gave for `ray`.
@@ -71,11 +66,6 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         (**self).intersect(primitive, ray)
-    }
-
-    #[inline]
-    fn occludes(&self, primitive: u32, ray: &PreparedRay) -> bool {
-        (**self).occludes(primitive, ray)
     }
 
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {

@@ -4,7 +4,7 @@ use crate::{Ray, Vec3};
 
 /// A valid [`Ray`] together with what depends on it alone.
 ///
-/// Traversals make one per ray and shrink [`t_max`](Self::t_max) as they find hits.
+/// Traversals make one per ray and do not change it: what a ray hits of one primitive never depends on the others.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedRay {
     /// Where the ray starts.

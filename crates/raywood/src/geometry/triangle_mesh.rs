@@ -9,8 +9,9 @@ use crate::{Aabb, Hit, Ray, Vec3};
 /// Triangles as triples of indices into an array of vertex positions. Checked once, when made: every index is in
 /// range and every position finite, so no query has to ask again.
 ///
-/// Degenerate triangles (a repeated vertex, no area) are legal and never hit. Triangles are hit from both sides,
-/// edges and vertices included, and no ray slips between two that share an edge (Woop, Benthin and Wald 2013).
+/// Triangles are hit from both sides, edges and vertices included, and no ray slips between two that share an edge
+/// (Woop, Benthin and Wald 2013). Degenerate triangles are legal: with a repeated vertex they are never hit, with three
+/// corners in a row only by rays that pass within rounding of that line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     positions: Vec<Vec3>,

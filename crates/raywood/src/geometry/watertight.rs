@@ -7,8 +7,8 @@
 use super::{PreparedRay, PrimitiveHit};
 use crate::Vec3;
 
-/// Below this determinant single precision may have lost digits to underflow.
-const SMALLEST_TRUSTED_DETERMINANT: f32 = 1e-30;
+/// Outside of this range of determinants single precision may have lost digits to underflow or come too near to overflow.
+const TRUSTED_DETERMINANTS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 
 /// The hit of a ray with the triangle `p0 p1 p2`, from either side, edges and vertices included.
 #[inline]
@@ -35,17 +35,15 @@ pub(super) fn intersect_triangle(
 
     // Where single precision cannot tell (a zero, an overflow, digits lost to underflow), double precision can.
     let no_edge_is_zero = e0 != 0.0 && e1 != 0.0 && e2 != 0.0;
-    let in_range = determinant.abs() >= SMALLEST_TRUSTED_DETERMINANT && determinant.is_finite();
+    let in_range = TRUSTED_DETERMINANTS.contains(&determinant.abs());
     if !(no_edge_is_zero && in_range) {
         return intersect_in_double(ray, a, b, c);
     }
 
     let reciprocal = 1.0 / determinant;
-    let t = (e0 * a[2] + e1 * b[2] + e2 * c[2]) * ray.shear[2] * reciprocal;
-    if !ray.accepts(t) {
-        return None;
-    }
-    Some(PrimitiveHit { t, u: e1 * reciprocal, v: e2 * reciprocal })
+    let (w, u, v) = (e0 * reciprocal, e1 * reciprocal, e2 * reciprocal);
+    let t = (w * a[2] + u * b[2] + v * c[2]) * ray.shear[2];
+    ray.accepts(t).then_some(PrimitiveHit { t, u, v })
 }
 
 /// A vertex in the ray's frame: relative to the origin, sheared so that the ray is the third axis (not yet scaled).
@@ -79,8 +77,6 @@ fn intersect_in_double(
         return None;
     }
     let t = ((e0 * a[2] + e1 * b[2] + e2 * c[2]) * f64::from(ray.shear[2]) / determinant) as f32;
-    if !ray.accepts(t) {
-        return None;
-    }
-    Some(PrimitiveHit { t, u: (e1 / determinant) as f32, v: (e2 / determinant) as f32 })
+    let (u, v) = ((e1 / determinant) as f32, (e2 / determinant) as f32);
+    ray.accepts(t).then_some(PrimitiveHit { t, u, v })
 }

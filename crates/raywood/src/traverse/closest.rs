@@ -1,7 +1,7 @@
 //! The closest hit of one ray: depth first, nearer child first.
 
 use super::Probe;
-use super::slab::{entry, lengthened};
+use super::slab::{entry, inside_own_bounds, lengthened};
 use super::stack::Stack;
 use crate::structures::Bvh2;
 use crate::{Geometry, Hit, PreparedRay, Ray};
@@ -13,12 +13,14 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
     ray: &Ray,
     probe: &mut P,
 ) -> Option<Hit> {
-    let mut ray = PreparedRay::new(ray)?;
+    let ray = PreparedRay::new(ray)?;
     let mut best: Option<Hit> = None;
+    // Where looking further is of no use: the ray's end, later the closest hit so far.
+    let mut t_max = ray.t_max;
 
     let mut node = tree.nodes().first()?;
     probe.boxes(1);
-    entry(&ray, node)?;
+    entry(&ray, t_max, node)?;
 
     // Nodes to visit later, with the distance at which the ray enters them.
     let mut stack = Stack::<(u32, f32)>::new();
@@ -27,17 +29,19 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
             probe.primitives(node.count as usize);
             for &primitive in tree.leaf_primitives(node) {
                 if let Some(hit) = geometry.intersect(primitive, &ray)
-                    && best.is_none_or(|best| hit.t < best.t || primitive < best.primitive)
+                    && let Some(hit) = inside_own_bounds(&ray, hit, &geometry.bounds(primitive))
+                    && best.is_none_or(|best| {
+                        hit.t < best.t || (hit.t == best.t && primitive < best.primitive)
+                    })
                 {
                     best = Some(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
-                    // Just beyond the hit, so that equally near ones still compete for the lowest number.
-                    ray.t_max = hit.t.next_up();
+                    t_max = hit.t;
                 }
             }
         } else {
             probe.boxes(2);
             let [left, right] = tree.children(node);
-            match (entry(&ray, left), entry(&ray, right)) {
+            match (entry(&ray, t_max, left), entry(&ray, t_max, right)) {
                 (Some(near_left), Some(near_right)) => {
                     let left_first = near_left <= near_right;
                     let (near, far) =
@@ -59,7 +63,7 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
         }
 
         // On to the next node that begins before the closest hit.
-        let limit = lengthened(ray.t_max);
+        let limit = lengthened(t_max);
         node = loop {
             let Some((next, near)) = stack.pop() else { return best };
             if near <= limit {

@@ -1,7 +1,7 @@
 //! Whether anything blocks a ray: depth first, in any order, until the first hit.
 
 use super::Probe;
-use super::slab::entry;
+use super::slab::{entry, inside_own_bounds};
 use super::stack::Stack;
 use crate::structures::Bvh2;
 use crate::{Geometry, PreparedRay, Ray};
@@ -17,7 +17,7 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
         return false;
     };
     probe.boxes(1);
-    if entry(&ray, node).is_none() {
+    if entry(&ray, ray.t_max, node).is_none() {
         return false;
     }
 
@@ -26,7 +26,9 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
         if node.is_leaf() {
             for &primitive in tree.leaf_primitives(node) {
                 probe.primitives(1);
-                if geometry.occludes(primitive, &ray) {
+                if let Some(hit) = geometry.intersect(primitive, &ray)
+                    && inside_own_bounds(&ray, hit, &geometry.bounds(primitive)).is_some()
+                {
                     return true;
                 }
             }
@@ -34,7 +36,7 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
             probe.boxes(2);
             let [left, right] = tree.children(node);
             // The nearer child first: for shadow rays it holds the blocker more often.
-            match (entry(&ray, left), entry(&ray, right)) {
+            match (entry(&ray, ray.t_max, left), entry(&ray, ray.t_max, right)) {
                 (Some(near_left), Some(near_right)) => {
                     let left_first = near_left <= near_right;
                     stack.push(node.left_first + u32::from(left_first));

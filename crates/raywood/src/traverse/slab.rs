@@ -1,7 +1,7 @@
 //! The ray-box test by slabs: Kay and Kajiya 1986, made conservative after Ize, "Robust BVH Ray Traversal", JCGT 2013.
 
-use crate::PreparedRay;
 use crate::structures::Node;
+use crate::{Aabb, PreparedRay, PrimitiveHit, Vec3};
 
 /// By how much of itself the far distance is lengthened, so that rounding never makes a ray miss a box whose content it hits,
 /// and so that an equally near hit in another box is still found. 2^-20, eight units in the last place; Ize needs two.
@@ -13,21 +13,45 @@ pub(super) fn lengthened(far: f32) -> f32 {
     far + far.abs() * SLACK
 }
 
-/// The distance at which the ray enters the node's box, or `None` if it misses it or comes only after the ray's end.
+/// The distance at which the ray enters the node's box, or `None` if it misses it or comes there only after `t_max`.
 #[inline]
-pub(super) fn entry(ray: &PreparedRay, node: &Node) -> Option<f32> {
+pub(super) fn entry(ray: &PreparedRay, t_max: f32, node: &Node) -> Option<f32> {
+    let (near, far) = overlap(ray, t_max, node.min, node.max);
+    (near <= lengthened(far)).then_some(near)
+}
+
+/// The hit with a primitive as every traversal sees it: `None` if the ray misses the primitive's own box, else with the
+/// distance brought into the interval over which the ray is inside that box.
+///
+/// This makes the answer independent of the tree. Rounding may put a hit on a large triangle before the box that holds it, and
+/// whether such a hit is found would depend on what else was found earlier; after this no hit lies before any box around its
+/// primitive, for the slab test never enters an outer box later than an inner one.
+#[inline]
+pub(super) fn inside_own_bounds(
+    ray: &PreparedRay,
+    hit: PrimitiveHit,
+    bounds: &Aabb,
+) -> Option<PrimitiveHit> {
+    let (near, far) = overlap(ray, ray.t_max, bounds.min, bounds.max);
+    let t = hit.t.min(far).max(near);
+    (near <= lengthened(far) && ray.accepts(t)).then_some(PrimitiveHit { t, ..hit })
+}
+
+/// The part of the interval from `t_min` to `t_max` inside a box; empty (near beyond far) if there is none.
+#[inline]
+fn overlap(ray: &PreparedRay, t_max: f32, box_min: Vec3, box_max: Vec3) -> (f32, f32) {
     // A ray that runs along a slab's face gives NaN (zero times infinity); comparing so that NaN loses lets the other axes
     // decide, which keeps the face part of the box.
     let max = |x: f32, acc: f32| if x > acc { x } else { acc };
     let min = |x: f32, acc: f32| if x < acc { x } else { acc };
-    let (mut near, mut far) = (ray.t_min, ray.t_max);
+    let (mut near, mut far) = (ray.t_min, t_max);
     for axis in 0..3 {
         let reciprocal = ray.reciprocal[axis];
-        let to_min = (node.min[axis] - ray.origin[axis]) * reciprocal;
-        let to_max = (node.max[axis] - ray.origin[axis]) * reciprocal;
+        let to_min = (box_min[axis] - ray.origin[axis]) * reciprocal;
+        let to_max = (box_max[axis] - ray.origin[axis]) * reciprocal;
         let backwards = reciprocal < 0.0;
         near = max(if backwards { to_max } else { to_min }, near);
         far = min(if backwards { to_min } else { to_max }, far);
     }
-    (near <= lengthened(far)).then_some(near)
+    (near, far)
 }

@@ -1,0 +1,170 @@
+//! The invariants of trees: any input, any number of threads.
+
+use raywood::{Aabb, BuildError, BuildOptions, Bvh, Bvh2, Geometry, Hit, Ray, TriangleMesh, Vec3};
+use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
+use raywood_testkit::{nasty, shapes};
+
+/// Boxes that cannot be hit: geometry for builders alone.
+#[derive(Debug)]
+struct Boxes(Vec<Aabb>);
+
+impl Geometry for Boxes {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+    fn bounds(&self, primitive: u32) -> Aabb {
+        self.0[primitive as usize]
+    }
+    fn intersect(&self, _: u32, _: &PreparedRay) -> Option<PrimitiveHit> {
+        None
+    }
+    fn surface_point(&self, ray: &Ray, _: &Hit) -> SurfacePoint {
+        SurfacePoint { position: ray.origin, normal: Vec3::Y, clearance: 0.0 }
+    }
+}
+
+fn build(boxes: Vec<Aabb>) -> Bvh<Boxes> {
+    let bvh = Bvh::build(Boxes(boxes)).expect("it builds");
+    bvh.validate().expect("a valid tree");
+    bvh
+}
+
+#[test]
+fn every_mesh_gives_a_valid_tree() {
+    for nasty in nasty::all() {
+        let n = nasty.mesh.len();
+        let bvh = Bvh::build(&nasty.mesh).expect("it builds");
+        bvh.validate().unwrap_or_else(|error| panic!("{}: {error}", nasty.name));
+        let stats = bvh.stats();
+        assert_eq!(stats.primitives, n, "{}", nasty.name);
+        assert!(stats.nodes <= (2 * n).saturating_sub(1), "{}: {stats}", nasty.name);
+        assert_eq!(stats.nodes, (2 * stats.leaves).saturating_sub(1), "{}: {stats}", nasty.name);
+        assert!(
+            stats.max_leaf_primitives <= BuildOptions::default().max_leaf_size,
+            "{}: {stats}",
+            nasty.name
+        );
+        assert!(stats.q.is_finite(), "{}: {stats}", nasty.name);
+        assert_eq!(bvh.tree().bounds(), nasty.mesh.total_bounds(), "{}", nasty.name);
+    }
+}
+
+#[test]
+fn a_million_identical_boxes() {
+    let stats = build(vec![Aabb::new([1.0; 3], [2.0; 3]); 1 << 20]).stats();
+    assert_eq!(stats.max_leaf_primitives, 8);
+    assert_eq!(stats.depth, 18);
+}
+
+#[test]
+fn a_million_identical_centers() {
+    let around = |i: usize| Aabb::new([-(i as f32); 3], [i as f32; 3]);
+    let stats = build((0..1 << 20).map(around).collect()).stats();
+    assert!(stats.depth <= 64, "{stats}");
+}
+
+#[test]
+fn extreme_boxes() {
+    let huge = f32::MAX;
+    build(vec![Aabb::new([-huge; 3], [huge; 3]); 100]);
+    build((0..100).map(|i| Aabb::new([-huge; 3], [i as f32; 3])).collect());
+    build((0..100).map(|i| Aabb::new([i as f32 * 1e-42; 3], [i as f32 * 1e-42; 3])).collect());
+    let mut boxes: Vec<Aabb> =
+        (0..1000).map(|i| Aabb::new([i as f32 * 1e-3; 3], [i as f32 * 1e-3 + 1e-4; 3])).collect();
+    boxes.push(Aabb::new([-huge; 3], [huge; 3]));
+    build(boxes);
+}
+
+#[test]
+fn a_series_that_would_make_a_deep_tree() {
+    // Each box a fraction of the last, over the whole range of numbers: splits cut off one at a time.
+    let boxes = (0..2500).map(|i| {
+        let x = 2f32.powf(120.0 - 0.1 * i as f32);
+        Aabb::new([x, 0.0, 0.0], [x, 1.0, 1.0])
+    });
+    let stats = build(boxes.collect()).stats();
+    assert!(stats.depth <= 64, "{stats}");
+}
+
+#[test]
+fn leaves_follow_the_options() {
+    let mesh = shapes::soup(3000, 0.05, 1);
+    for max_leaf_size in [1, 2, 5] {
+        let options = BuildOptions { max_leaf_size, ..Default::default() };
+        let bvh = Bvh::build_with(&mesh, &options).expect("it builds");
+        bvh.validate().expect("a valid tree");
+        assert!(bvh.stats().max_leaf_primitives <= max_leaf_size);
+    }
+    // Absurd values are brought into range.
+    let options =
+        BuildOptions { bins: 0, max_leaf_size: 0, node_cost: f32::NAN, primitive_cost: -1.0 };
+    Bvh::build_with(&mesh, &options).expect("it builds").validate().expect("a valid tree");
+    let options = BuildOptions {
+        bins: usize::MAX,
+        max_leaf_size: usize::MAX,
+        node_cost: 1e30,
+        primitive_cost: 1e-30,
+    };
+    assert_eq!(Bvh::build_with(&mesh, &options).expect("it builds").stats().nodes, 1);
+}
+
+#[test]
+fn splits_lower_the_expected_cost() {
+    let mesh = shapes::uv_sphere(60, Vec3::ZERO, 1.0);
+    let tree = Bvh::build(&mesh).expect("it builds").stats();
+    let options = BuildOptions { max_leaf_size: usize::MAX, node_cost: 1e30, ..Default::default() };
+    let leaf = Bvh::build_with(&mesh, &options).expect("it builds").stats();
+    assert_eq!(leaf.q, 1.0 + mesh.len() as f64);
+    assert!(tree.q < 0.01 * leaf.q, "{tree}");
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn the_same_tree_for_any_number_of_threads() {
+    let mesh = shapes::soup(60_000, 0.02, 2);
+    let build = |threads| -> Bvh2 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
+    };
+    let one = build(1);
+    for threads in [2, 7] {
+        assert!(build(threads) == one, "{threads} threads give another tree");
+    }
+}
+
+#[test]
+fn bad_bounds_are_refused() {
+    let good = Aabb::new([0.0; 3], [1.0; 3]);
+    for bad in [
+        Aabb::EMPTY,
+        Aabb::new([f32::NAN, 0.0, 0.0], [1.0; 3]),
+        Aabb::new([0.0; 3], [1.0, f32::NAN, 1.0]),
+        Aabb::new([f32::NEG_INFINITY; 3], [1.0; 3]),
+        Aabb::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]),
+    ] {
+        let error = Bvh::build(Boxes(vec![good, good, bad, good])).expect_err("it is refused");
+        assert!(matches!(error, BuildError::BadBounds { primitive: 2, .. }), "{error}");
+        assert!(error.to_string().starts_with("primitive 2 has the bounds"), "{error}");
+    }
+}
+
+#[test]
+fn bad_meshes_are_refused() {
+    let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let error =
+        TriangleMesh::new(points.clone(), vec![[0, 1, 2], [0, 3, 2]]).expect_err("it is refused");
+    assert_eq!(
+        error.to_string(),
+        "triangle 1 uses vertex 3, but there are 3 vertices (0 is the first)"
+    );
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut points = points.clone();
+        points[1][2] = bad;
+        points.push([bad; 3]);
+        let error = TriangleMesh::new(points, vec![[0, 1, 2]]).expect_err("it is refused");
+        assert_eq!(
+            error.to_string(),
+            "2 vertices are NaN or infinite, the first of them is vertex 1"
+        );
+    }
+}

@@ -1,0 +1,136 @@
+//! No ray gets through a closed mesh, and none that starts on a surface hits it again.
+
+use raywood::{Bvh, Ray, TriangleMesh, Vec3};
+use raywood_testkit::{Rng, shapes};
+
+/// Closed meshes around a point that is well inside of each, with their size.
+fn closed_meshes() -> Vec<(&'static str, TriangleMesh, Vec3, f32)> {
+    let far = Vec3::new(148376.0, 1234.0, -223423.0);
+    let mut meshes = vec![];
+    for (center, radius) in
+        [(Vec3::ZERO, 1.0), (far, 50.0), (Vec3::splat(1e-3), 1e-6), (Vec3::splat(1e5), 1e9)]
+    {
+        for segments in [5, 50] {
+            meshes.push(("sphere", shapes::uv_sphere(segments, center, radius), center, radius));
+        }
+        let half = Vec3::splat(radius);
+        meshes.push(("box", shapes::grid_box(1, center - half, center + half), center, radius));
+        meshes.push((
+            "box of grids",
+            shapes::grid_box(10, center - half, center + half),
+            center,
+            radius,
+        ));
+    }
+    meshes
+}
+
+/// Points on the mesh where neighbours meet: its vertices, and points on its edges.
+fn seams(mesh: &TriangleMesh, rng: &mut Rng) -> Vec<Vec3> {
+    let mut points = mesh.positions().to_vec();
+    for triangle in 0..mesh.triangles().len() as u32 {
+        let [p0, p1, p2] = mesh.corners(triangle);
+        points.extend([0.5 * (p0 + p1), p1 + rng.unit() * (p2 - p1)]);
+    }
+    points
+}
+
+#[test]
+fn no_ray_leaks_from_inside() {
+    let mut rng = Rng::new(1);
+    for (name, mesh, center, radius) in closed_meshes() {
+        let bvh = Bvh::build(&mesh).expect("it builds");
+        let inside = |rng: &mut Rng| center + 0.5 * radius * rng.in_cube();
+        let mut rays: Vec<Ray> =
+            (0..50_000).map(|_| Ray::new(inside(&mut rng), rng.direction())).collect();
+
+        // At vertices and edges, from a random point and from the very centre; along the axes, in the planes of vertices.
+        for point in seams(&mesh, &mut rng) {
+            let from = inside(&mut rng);
+            rays.extend([Ray::new(from, point - from), Ray::new(center, point - center)]);
+        }
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            for &vertex in mesh.positions().iter().take(2000) {
+                let from = center + 0.5 * (vertex - center);
+                rays.extend([Ray::new(from, axis), Ray::new(from, -axis), Ray::new(center, axis)]);
+            }
+        }
+
+        for ray in rays.iter().filter(|ray| ray.is_valid()) {
+            assert!(bvh.intersect(ray).is_some(), "{name} of size {radius}: {ray:?} leaks");
+            assert!(bvh.occluded(ray), "{name} of size {radius}: {ray:?} is not blocked");
+        }
+    }
+}
+
+#[test]
+fn no_ray_passes_through_from_outside() {
+    let mut rng = Rng::new(2);
+    for (name, mesh, center, radius) in closed_meshes() {
+        let bvh = Bvh::build(&mesh).expect("it builds");
+        for target in seams(&mesh, &mut rng) {
+            let from = center + 4.0 * radius * rng.direction();
+            // Rays that only graze the silhouette may miss.
+            let (outwards, direction) = (target - center, target - from);
+            if outwards.dot(direction) > -0.85 * outwards.length() * direction.length() {
+                continue;
+            }
+            let ray = Ray::new(from, direction);
+            let hit = bvh
+                .intersect(&ray)
+                .unwrap_or_else(|| panic!("{name} of size {radius}: {ray:?} passes through"));
+            let reach = from.abs().max_element().max(radius);
+            let tolerance = 64.0 * f32::EPSILON * reach / radius;
+            assert!(
+                hit.t < 1.0 + tolerance.max(1e-4),
+                "{name} of size {radius}: {hit:?} with {ray:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn spawned_rays_leave_their_surface() {
+    let mut rng = Rng::new(3);
+    let mut spawned = 0;
+    for exponent in -6..=9 {
+        let scale = 10f32.powi(exponent);
+        for offset in [Vec3::ZERO, Vec3::new(0.3, 7.0, -2.0), Vec3::new(1000.0, 10.0, -700.0)] {
+            let center = scale * offset;
+            let half = Vec3::splat(scale);
+            for mesh in [
+                shapes::grid_box(1, center - half, center + half),
+                shapes::grid_box(7, center - half, center + half),
+                shapes::uv_sphere(24, center, scale),
+            ] {
+                let bvh = Bvh::build(&mesh).expect("it builds");
+                for _ in 0..2000 {
+                    let from = center + 4.0 * scale * rng.direction();
+                    let ray = Ray::new(from, center + 0.5 * scale * rng.in_cube() - from);
+                    let hit = bvh.intersect(&ray).expect("the centre is inside");
+                    let point = bvh.surface_point(&ray, &hit);
+
+                    // Convex, so a ray outwards is free, all the way to a light, and one inwards hits the other side.
+                    let direction = rng.direction();
+                    let out =
+                        if direction.dot(point.normal) < 0.0 { -direction } else { direction };
+                    let away = point.spawn(out);
+                    assert!(
+                        !bvh.occluded(&away),
+                        "scale {scale}: {away:?} hits {:?}",
+                        bvh.intersect(&away)
+                    );
+                    let light = point.position + 3.0 * scale * out;
+                    assert!(
+                        !bvh.occluded(&point.spawn_towards(light)),
+                        "scale {scale}: no light at {point:?}"
+                    );
+                    let inwards = point.spawn(-out);
+                    assert!(bvh.occluded(&inwards), "scale {scale}: {inwards:?} leaks");
+                    spawned += 1;
+                }
+            }
+        }
+    }
+    assert!(spawned > 100_000, "only {spawned} rays");
+}
