@@ -27,22 +27,28 @@ pub(crate) fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Send + Sync) -> Ve
     (0..n).map(f).collect()
 }
 
-/// Folds a slice in pieces and merges these; `merge` and `fold` must not care about order.
+/// Folds a slice in pieces and merges these into one; `step` and `merge` must not care about order.
 pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     items: &[T],
     start: A,
-    step: impl Fn(A, &T) -> A + Sync,
-    merge: impl Fn(A, A) -> A + Sync,
+    step: impl Fn(&mut A, &T) + Sync,
+    merge: impl Fn(&mut A, &A) + Sync,
 ) -> A {
+    // In place: an accumulator may be large.
+    let fold_piece = |piece: &[T]| {
+        let mut accumulator = start.clone();
+        piece.iter().for_each(|item| step(&mut accumulator, item));
+        accumulator
+    };
     #[cfg(feature = "rayon")]
     if items.len() > 2 * GRAIN {
-        return items
-            .par_chunks(GRAIN)
-            .map(|chunk| chunk.iter().fold(start.clone(), &step))
-            .reduce(|| start.clone(), &merge);
+        let mut pieces: Vec<A> = items.par_chunks(GRAIN).map(fold_piece).collect();
+        let (whole, rest) = pieces.split_at_mut(1);
+        rest.iter().for_each(|piece| merge(&mut whole[0], piece));
+        return pieces.swap_remove(0);
     }
     let _ = (merge, GRAIN);
-    items.iter().fold(start, step)
+    fold_piece(items)
 }
 
 /// Writes `f` of each input to the output beside it. Both slices have the same length.

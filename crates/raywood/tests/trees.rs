@@ -1,6 +1,6 @@
 //! The invariants of trees: any input, any number of threads.
 
-use raywood::{Aabb, BuildError, BuildOptions, Bvh, Bvh2, Geometry, Hit, Ray, TriangleMesh, Vec3};
+use raywood::{Aabb, BuildError, BuildOptions, Bvh, Geometry, Hit, Ray, TriangleMesh, Vec3};
 use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
 use raywood_testkit::{nasty, shapes};
 
@@ -122,9 +122,9 @@ fn splits_lower_the_expected_cost() {
 #[test]
 fn the_same_tree_for_any_number_of_threads() {
     let mesh = shapes::soup(60_000, 0.02, 2);
-    let build = |threads| -> Bvh2 {
+    let build = |threads| -> raywood::Bvh2 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
+        pool.install(|| raywood::Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
     };
     let one = build(1);
     for threads in [2, 7] {

@@ -1,6 +1,7 @@
 //! The recursion that every top-down builder shares: in place like quicksort, over an array of primitive numbers that
 //! is permuted while the primitives themselves stay where they are.
 
+use super::PackedAabb;
 use crate::structures::{Bvh2, MAX_DEPTH, Node};
 use crate::{Aabb, BuildError, Geometry};
 
@@ -13,7 +14,12 @@ pub(crate) trait Splitter: Sync {
     /// both children, or says by `None` that the set should be a leaf.
     ///
     /// The answer must depend on the arguments alone, never on timing or threads.
-    fn split(&self, bounds: &[Aabb], indices: &mut [u32], node_bounds: &Aabb) -> Option<Split>;
+    fn split(
+        &self,
+        bounds: &[PackedAabb],
+        indices: &mut [u32],
+        node_bounds: &PackedAabb,
+    ) -> Option<Split>;
 }
 
 /// A set of primitives divided in two.
@@ -21,27 +27,31 @@ pub(crate) struct Split {
     /// How many primitives go left; neither none nor all.
     pub(crate) left_count: usize,
     /// The box around them.
-    pub(crate) left: Aabb,
+    pub(crate) left: PackedAabb,
     /// The box around the others.
-    pub(crate) right: Aabb,
+    pub(crate) right: PackedAabb,
 }
 
 /// The bounds of every primitive, checked.
-pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<Aabb>, BuildError> {
+pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<PackedAabb>, BuildError> {
     let primitives = geometry.len();
     if primitives > BuildError::MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { primitives });
     }
-    let bounds: Vec<Aabb> =
-        crate::parallel::map(primitives, |primitive| geometry.bounds(primitive as u32));
-    match bounds.iter().position(|b| b.is_empty() || !b.is_finite()) {
-        Some(bad) => Err(BuildError::BadBounds { primitive: bad as u32, bounds: bounds[bad] }),
-        None => Ok(bounds),
-    }
+    let is_bad = |bounds: &Aabb| bounds.is_empty() || !bounds.is_finite();
+    let bounds = crate::parallel::map(primitives, |primitive| {
+        let bounds = geometry.bounds(primitive as u32);
+        if is_bad(&bounds) {
+            Err(BuildError::BadBounds { primitive: primitive as u32, bounds })
+        } else {
+            Ok(bounds.into())
+        }
+    });
+    bounds.into_iter().collect()
 }
 
 /// Builds the tree over primitives with the given (checked) bounds. The same for any number of threads.
-pub(crate) fn build<S: Splitter>(bounds: &[Aabb], splitter: &S) -> Bvh2 {
+pub(crate) fn build<S: Splitter>(bounds: &[PackedAabb], splitter: &S) -> Bvh2 {
     let n = bounds.len();
     let mut indices: Vec<u32> = (0..n as u32).collect();
     if n == 0 {
@@ -50,8 +60,9 @@ pub(crate) fn build<S: Splitter>(bounds: &[Aabb], splitter: &S) -> Bvh2 {
 
     // A set of n primitives has at most 2n-1 nodes. Each subtree gets its own stretch of the pool of that size, so that
     // where a node lies follows from the counts and not from which thread came first.
-    let root_bounds = crate::parallel::fold(bounds, Aabb::EMPTY, |a, b| a.union(*b), Aabb::union);
-    let mut pool = vec![Node::leaf(root_bounds, 0, n as u32); 2 * n - 1];
+    let root_bounds =
+        crate::parallel::fold(bounds, PackedAabb::EMPTY, PackedAabb::grow, PackedAabb::grow);
+    let mut pool = vec![Node::leaf(root_bounds.into(), 0, n as u32); 2 * n - 1];
     let (root, descendants) = pool.split_at_mut(1);
     subdivide(
         bounds,
@@ -77,7 +88,7 @@ struct Subtree<'a> {
 
 /// Divides `node`, a leaf over all of the subtree's primitives, as long as the splitter wants to.
 fn subdivide<S: Splitter>(
-    bounds: &[Aabb],
+    bounds: &[PackedAabb],
     splitter: &S,
     node: &mut Node,
     subtree: Subtree<'_>,
@@ -94,7 +105,7 @@ fn subdivide<S: Splitter>(
     let split = if depth + halvings >= MAX_DEPTH {
         Some(split_at_median(bounds, indices))
     } else {
-        splitter.split(bounds, indices, &node.bounds())
+        splitter.split(bounds, indices, &node.bounds().into())
     };
     let Some(Split { left_count, left, right }) = split else { return };
     debug_assert!(0 < left_count && left_count < count);
@@ -104,8 +115,9 @@ fn subdivide<S: Splitter>(
     *node = Node::interior(node.bounds(), first_node as u32);
     let (children, rest) = descendants.split_at_mut(2);
     let (left_node, right_node) = children.split_at_mut(1);
-    left_node[0] = Node::leaf(left, first as u32, left_count as u32);
-    right_node[0] = Node::leaf(right, (first + left_count) as u32, (count - left_count) as u32);
+    left_node[0] = Node::leaf(left.into(), first as u32, left_count as u32);
+    right_node[0] =
+        Node::leaf(right.into(), (first + left_count) as u32, (count - left_count) as u32);
     let (left_room, right_room) = rest.split_at_mut(2 * left_count - 2);
     let (left_indices, right_indices) = indices.split_at_mut(left_count);
     let below_left = Subtree {
@@ -128,15 +140,16 @@ fn subdivide<S: Splitter>(
 }
 
 /// Halves a set by the order of its centroids along the axis on which these spread most. Always succeeds.
-pub(crate) fn split_at_median(bounds: &[Aabb], indices: &mut [u32]) -> Split {
+pub(crate) fn split_at_median(bounds: &[PackedAabb], indices: &mut [u32]) -> Split {
     let center = |&i: &u32| bounds[i as usize].center();
-    let axis = Aabb::of_points(indices.iter().map(center)).extent().max_axis();
+    let centers = indices.iter().fold(PackedAabb::EMPTY, |centers, i| centers.including(center(i)));
+    let axis = Aabb::from(centers).extent().max_axis();
     let left_count = indices.len() / 2;
     indices.select_nth_unstable_by(left_count, |a, b| {
         center(a)[axis].total_cmp(&center(b)[axis]).then_with(|| a.cmp(b))
     });
     let bounds_of =
-        |part: &[u32]| part.iter().fold(Aabb::EMPTY, |a, &i| a.union(bounds[i as usize]));
+        |part: &[u32]| part.iter().fold(PackedAabb::EMPTY, |a, &i| a.union(bounds[i as usize]));
     Split {
         left_count,
         left: bounds_of(&indices[..left_count]),

@@ -3,6 +3,8 @@
 
 pub(crate) mod driver;
 mod options;
+mod packed_aabb;
 pub(crate) mod sah_binned;
 
 pub use options::BuildOptions;
+pub(crate) use packed_aabb::PackedAabb;

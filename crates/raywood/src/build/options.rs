@@ -7,7 +7,7 @@
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// Into how many bins the centroids are sorted per axis when a split is chosen, 2 to 64. More bins find slightly better
+    /// Into how many bins the centroids are sorted per axis when a split is chosen, 2 to 32. More bins find slightly better
     /// splits and take longer.
     pub bins: usize,
     /// The most primitives a leaf may hold, at least 1. Larger sets are split even if the cost model would not.

@@ -1,0 +1,90 @@
+//! A box in the form that builders work with.
+
+use crate::{Aabb, Vec3};
+
+/// A box as two groups of four numbers, the fourth of no meaning: the compiler turns a union into two vector instructions.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct PackedAabb {
+    min: [f32; 4],
+    max: [f32; 4],
+}
+
+impl PackedAabb {
+    pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
+
+    /// The smallest box around both. Neither has NaN.
+    #[inline]
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self { min: lanes(self.min, other.min, smaller), max: lanes(self.max, other.max, larger) }
+    }
+
+    /// Makes this box the smallest one around both.
+    #[inline]
+    pub(crate) fn grow(&mut self, other: &Self) {
+        *self = self.union(*other);
+    }
+
+    /// The smallest box around this one and a point.
+    #[inline]
+    pub(crate) fn including(self, point: [f32; 4]) -> Self {
+        Self { min: lanes(self.min, point, smaller), max: lanes(self.max, point, larger) }
+    }
+
+    /// The centre. Does not overflow.
+    #[inline]
+    pub(crate) fn center(&self) -> [f32; 4] {
+        lanes(self.min, self.max, |a, b| 0.5 * a + 0.5 * b)
+    }
+
+    /// The smallest coordinates.
+    #[inline]
+    pub(crate) fn min(&self) -> [f32; 4] {
+        self.min
+    }
+
+    /// The lengths of the edges; may overflow to infinity.
+    #[inline]
+    pub(crate) fn extent(&self) -> [f32; 4] {
+        lanes(self.max, self.min, |a, b| a - b)
+    }
+
+    /// Half the surface area of a box that is not empty, in double precision, where no finite box overflows or vanishes.
+    #[inline]
+    pub(crate) fn half_area(&self) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]));
+        x * y + y * z + z * x
+    }
+}
+
+impl From<Aabb> for PackedAabb {
+    #[inline]
+    fn from(Aabb { min, max }: Aabb) -> Self {
+        Self { min: [min.x, min.y, min.z, 0.0], max: [max.x, max.y, max.z, 0.0] }
+    }
+}
+
+impl From<PackedAabb> for Aabb {
+    #[inline]
+    fn from(PackedAabb { min, max }: PackedAabb) -> Self {
+        Self { min: Vec3::new(min[0], min[1], min[2]), max: Vec3::new(max[0], max[1], max[2]) }
+    }
+}
+
+/// The smaller number, as one instruction finds it.
+#[inline]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger number, as one instruction finds it.
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// `f` of each pair.
+#[inline]
+fn lanes(a: [f32; 4], b: [f32; 4], f: impl Fn(f32, f32) -> f32) -> [f32; 4] {
+    [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2]), f(a[3], b[3])]
+}
