@@ -2,6 +2,7 @@
 
 mod camera;
 mod color;
+mod framing;
 mod light;
 mod material;
 mod mesh;
@@ -9,6 +10,7 @@ mod scene;
 
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
+pub use framing::{ambient, default_camera, default_lights, frame_bounds, guess_up};
 pub use light::{Light, LightKind};
 pub use material::{Material, MaterialId, Pattern};
 pub use mesh::Mesh;

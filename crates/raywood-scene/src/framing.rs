@@ -1,0 +1,207 @@
+//! Cameras and lights for scenes that bring none: what a person would choose who only sees the bounding box.
+
+use raywood::{Aabb, Vec3};
+
+use crate::{Camera, Light, LightKind, Rgb};
+
+/// The vertical field of view of default cameras, in degrees: that of a 50 mm lens or so, free of distortion.
+const FOV_Y: f32 = 35.0;
+
+/// The share of the picture's width or height that the bounding box fills.
+const FILL: f64 = 0.94;
+
+/// A camera that shows the whole box from the front, the right and above, as large as it fits.
+///
+/// The box is seen from `(0.6, 0.45, 1)` where y is up (see [`guess_up`]), from the same quarter where z is up. An
+/// empty box counts as the unit cube. `aspect` is the picture's width over its height.
+pub fn default_camera(bounds: &Aabb, aspect: f32) -> Camera {
+    let up = guess_up(bounds);
+    let from = if up == Vec3::Z { Vec3::new(0.6, -1.0, 0.55) } else { Vec3::new(0.6, 0.45, 1.0) };
+    frame_bounds(bounds, from, up, aspect)
+}
+
+/// The direction that is up in a model, as far as its bounding box tells.
+///
+/// Most formats and programs say y. A box that is much thinner along z than along both others is a terrain or a plate
+/// that lies flat in a world where z is up.
+pub fn guess_up(bounds: &Aabb) -> Vec3 {
+    let extent = bounds.extent();
+    let lies_flat = extent.z > 0.0 && extent.z < 0.35 * extent.x.min(extent.y);
+    if lies_flat { Vec3::Z } else { Vec3::Y }
+}
+
+/// A camera that looks at the box from the direction `from` (any length), with `up` upwards, as near as it can be while
+/// the whole box is in the picture.
+pub fn frame_bounds(bounds: &Aabb, from: Vec3, up: Vec3, aspect: f32) -> Camera {
+    let (center, half) = center_and_half_extent(bounds);
+
+    // The picture's axes; double precision, since boxes may be tiny and far from the origin.
+    let back = from.normalize_or_zero();
+    let back = if back == Vec3::ZERO { Vec3::Z } else { back };
+    let right = up.cross(back).normalize_or_zero();
+    let right = if right == Vec3::ZERO { back.orthonormal_basis().0 } else { right };
+    let [right, true_up, back] = [right, back.cross(right), back].map(double);
+
+    // How far the box reaches beyond each of the four planes through the eye at the picture's edges, if the eye were at
+    // the centre. The eye must step back and aside until none of them cuts the box.
+    let slope_y = (0.5 * f64::from(FOV_Y).to_radians()).tan() * FILL;
+    let aspect = if aspect.is_finite() && aspect > 0.0 { f64::from(aspect) } else { 1.0 };
+    let slope_x = slope_y * aspect;
+    let (mut reach_x, mut reach_y) = ([f64::NEG_INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for corner in 0..8 {
+        let offset = [0, 1, 2].map(|i| if corner >> i & 1 == 0 { -half[i] } else { half[i] });
+        let (x, y, z) = (dot(offset, right), dot(offset, true_up), dot(offset, back));
+        reach_x = [reach_x[0].max(-x + slope_x * z), reach_x[1].max(x + slope_x * z)];
+        reach_y = [reach_y[0].max(-y + slope_y * z), reach_y[1].max(y + slope_y * z)];
+    }
+    let eye_x = 0.5 * (reach_x[1] - reach_x[0]);
+    let eye_y = 0.5 * (reach_y[1] - reach_y[0]);
+    let distance =
+        (0.5 * (reach_x[0] + reach_x[1]) / slope_x).max(0.5 * (reach_y[0] + reach_y[1]) / slope_y);
+
+    let target = [0, 1, 2].map(|i| center[i] + eye_x * right[i] + eye_y * true_up[i]);
+    let eye = [0, 1, 2].map(|i| target[i] + distance * back[i]);
+    Camera {
+        name: String::new(),
+        eye: single(eye),
+        target: single(target),
+        up: up.normalize_or_zero(),
+        fov_y: FOV_Y,
+    }
+}
+
+/// The box's centre, and half its extent widened so far that the camera's coordinates can tell eye from target.
+fn center_and_half_extent(bounds: &Aabb) -> ([f64; 3], [f64; 3]) {
+    if bounds.is_empty() || !bounds.is_finite() {
+        return ([0.0; 3], [0.5; 3]);
+    }
+    let (min, max) = (double(bounds.min), double(bounds.max));
+    let center = [0, 1, 2].map(|i| 0.5 * (min[i] + max[i]));
+    let mut half = [0, 1, 2].map(|i| 0.5 * (max[i] - min[i]));
+    let coordinate = center.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    let least = (coordinate * 64.0 * f64::from(f32::EPSILON)).max(1e-30);
+    if half.iter().all(|&h| h < least) {
+        half = [least; 3];
+    }
+    (center, half)
+}
+
+/// Lights for a scene seen from outside: a key light over the camera's left shoulder, a weak fill light from its
+/// right, and ambient light. Both are directional, so the scene's size does not matter.
+pub fn default_lights(camera: &Camera) -> Vec<Light> {
+    // Level axes, so that light comes from above however steeply the camera looks.
+    let up = camera.up.normalize_or_zero();
+    let back = (camera.eye - camera.target).normalize_or_zero();
+    let right = up.cross(back).normalize_or_zero();
+    let right = if right == Vec3::ZERO { back.orthonormal_basis().0 } else { right };
+    let level_back = right.cross(up);
+
+    let directional = |name: &str, towards: Vec3, strength: f32| Light {
+        name: name.into(),
+        kind: LightKind::Directional { direction: -towards.normalize_or_zero() },
+        intensity: Rgb::splat(strength),
+    };
+    vec![
+        directional("key", -0.7 * right + 1.1 * up + 0.8 * level_back, 0.85),
+        directional("fill", 0.9 * right + 0.35 * up + 0.5 * level_back, 0.22),
+        ambient(0.22),
+    ]
+}
+
+/// Light from all sides.
+pub fn ambient(strength: f32) -> Light {
+    Light { name: "ambient".into(), kind: LightKind::Ambient, intensity: Rgb::splat(strength) }
+}
+
+fn double(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+fn single(v: [f64; 3]) -> Vec3 {
+    let limit = f64::from(f32::MAX);
+    Vec3::from(v.map(|x| x.clamp(-limit, limit) as f32))
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The corners of a box in the camera's picture: from -1 to 1 across the width and height.
+    fn project(camera: &Camera, bounds: &Aabb, aspect: f64) -> Vec<[f64; 2]> {
+        let forward = (camera.target - camera.eye).normalize_or_zero();
+        let right = forward.cross(camera.up).normalize_or_zero();
+        let [right, up, forward] = [right, right.cross(forward), forward].map(double);
+        let slope = (0.5 * f64::from(camera.fov_y).to_radians()).tan();
+        let (min, max, eye) = (double(bounds.min), double(bounds.max), double(camera.eye));
+        (0..8)
+            .map(|corner| {
+                let p =
+                    [0, 1, 2].map(|i| if corner >> i & 1 == 0 { min[i] } else { max[i] } - eye[i]);
+                let depth = dot(p, forward);
+                assert!(depth > 0.0, "a corner behind the eye");
+                [dot(p, right) / (depth * slope * aspect), dot(p, up) / (depth * slope)]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn every_box_is_in_the_picture_and_fills_it() {
+        let boxes = [
+            Aabb::new([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]),
+            Aabb::new([0.0, 0.0, 0.0], [100.0, 1.0, 2.0]),
+            Aabb::new([0.0, 0.0, 0.0], [1.0, 200.0, 2.0]),
+            Aabb::new([3.0, 4.0, 5.0], [3.0, 8.0, 9.0]),
+            Aabb::new([0.0, 0.0, 0.0], [50.0, 40.0, 3.0]),
+            Aabb::new([1e-12, 0.0, 0.0], [2e-12, 3e-12, 1e-12]),
+            Aabb::new([-1e18, -1e18, -1e18], [1e18, 1e18, 1e18]),
+            Aabb::new([1000.0, 1000.0, 1000.0], [1001.0, 1002.0, 1001.0]),
+        ];
+        for bounds in boxes {
+            for aspect in [0.5, 1.0, 1.6, 3.0] {
+                let camera = default_camera(&bounds, aspect);
+                let corners = project(&camera, &bounds, f64::from(aspect));
+                let reach = corners.iter().flatten().fold(0.0, |r: f64, x| r.max(x.abs()));
+                assert!(reach <= 0.96, "{bounds:?} at {aspect} reaches to {reach}");
+                assert!(reach >= 0.92, "{bounds:?} at {aspect} only reaches to {reach}");
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_without_extent_have_a_usable_camera() {
+        for bounds in [
+            Aabb::EMPTY,
+            Aabb::new([0.0; 3], [0.0; 3]),
+            Aabb::new([1e6; 3], [1e6; 3]),
+            Aabb::new([f32::MIN; 3], [f32::MAX; 3]),
+        ] {
+            let camera = default_camera(&bounds, 1.6);
+            assert!(camera.eye.is_finite() && camera.target.is_finite() && camera.up.is_finite());
+            assert_ne!(camera.eye, camera.target);
+        }
+    }
+
+    #[test]
+    fn a_flat_terrain_is_seen_from_above_with_z_up() {
+        let camera = default_camera(&Aabb::new([0.0; 3], [100.0, 80.0, 10.0]), 1.6);
+        assert_eq!(camera.up, Vec3::Z);
+        assert!(camera.eye.z > camera.target.z);
+    }
+
+    #[test]
+    fn the_key_light_comes_from_above_and_from_the_viewers_side() {
+        let camera = default_camera(&Aabb::new([-1.0; 3], [1.0; 3]), 1.6);
+        let lights = default_lights(&camera);
+        let LightKind::Directional { direction } = lights[0].kind else {
+            panic!("not directional")
+        };
+        assert!(direction.y < -0.5);
+        assert!(direction.dot(camera.target - camera.eye) > 0.0);
+        assert!((direction.length() - 1.0).abs() < 1e-6);
+        assert!(lights[0].intensity.max_element() > 2.0 * lights[1].intensity.max_element());
+    }
+}
