@@ -1,1 +1,32 @@
-//! x
+//! Scenes to images: Whitted ray tracing on the `raywood` library.
+//!
+//! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`].
+
+mod camera_rays;
+mod film;
+pub mod fresnel;
+mod integrators;
+mod lights;
+mod options;
+mod png;
+mod prepared;
+mod progress;
+mod render;
+mod sampling;
+mod shading;
+mod shadows;
+mod stats;
+mod tiles;
+mod view;
+
+pub use camera_rays::{CameraError, CameraRays};
+pub use film::{Image, soft_clip, srgb8};
+pub use integrators::{INTEGRATORS, Integrator};
+pub use options::{RenderError, RenderOptions};
+pub use png::write_png;
+pub use prepared::{PreparedScene, Surfaces};
+pub use progress::Progress;
+pub use render::render;
+pub use sampling::PixelSamples;
+pub use stats::{RayCounts, RenderStats};
+pub use view::{View, default_view};

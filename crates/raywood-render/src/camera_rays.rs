@@ -1,0 +1,97 @@
+//! Rays from the eye through the pixels of a picture.
+
+use std::fmt;
+
+use raywood::{Ray, Vec3};
+use raywood_scene::Camera;
+
+/// Why nothing can be seen through a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// The eye, the target or the up vector is NaN or infinite.
+    NotFinite,
+    /// The eye is where the target is, so there is no direction of view.
+    NoDirection,
+    /// The field of view is not above 0 and below 180 degrees.
+    FieldOfView {
+        /// What it is, in degrees.
+        fov_y: f32,
+    },
+}
+
+impl fmt::Display for CameraError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(f, "the camera's eye, target and up must be finite numbers"),
+            Self::NoDirection => {
+                write!(f, "the camera's eye and target are the same point: move one of them")
+            }
+            Self::FieldOfView { fov_y } => {
+                write!(
+                    f,
+                    "the camera's field of view is {fov_y} degrees: it must be above 0 and below 180"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for CameraError {}
+
+/// A pinhole camera in front of a grid of pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRays {
+    eye: Vec3,
+    /// The direction to the picture's upper left corner, and the steps from pixel to pixel.
+    corner: Vec3,
+    step_x: Vec3,
+    step_y: Vec3,
+}
+
+impl CameraRays {
+    /// Rays for a picture of `width` x `height` square pixels.
+    ///
+    /// An `up` along the line of sight, or zero, is replaced by another direction: y, or z where y is no better.
+    ///
+    /// # Errors
+    ///
+    /// The camera holds NaN or infinity, has no direction of view, or an impossible field of view.
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self, CameraError> {
+        let Camera { eye, target, up, fov_y, .. } = *camera;
+        if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+            return Err(CameraError::NotFinite);
+        }
+        if !(fov_y > 0.0 && fov_y < 180.0) {
+            return Err(CameraError::FieldOfView { fov_y });
+        }
+        // Halved, so that two points at the far ends of the number range still have a difference.
+        let forward = (0.5 * target - 0.5 * eye).normalize_or_zero();
+        if forward == Vec3::ZERO {
+            return Err(CameraError::NoDirection);
+        }
+
+        // Right and up of the picture. The first `up` that is not within a thousandth of the line of sight will do.
+        let right = [up.normalize_or_zero(), Vec3::Y, Vec3::Z]
+            .map(|up| forward.cross(up))
+            .into_iter()
+            .find(|right| right.length() > 1e-3)
+            .map_or(Vec3::X, Vec3::normalize_or_zero);
+        let up = right.cross(forward);
+
+        // The picture at distance 1, in steps of pixels.
+        let half_height = (0.5 * fov_y.to_radians()).tan();
+        let pixel = 2.0 * half_height / height as f32;
+        let (step_x, step_y) = (pixel * right, -pixel * up);
+        let corner = forward - (0.5 * width as f32) * step_x - (0.5 * height as f32) * step_y;
+        Ok(Self { eye, corner, step_x, step_y })
+    }
+
+    /// The ray through a point of the picture, in pixels from its upper left corner (the first pixel's centre is
+    /// `(0.5, 0.5)`). Its direction is of unit length.
+    #[inline]
+    pub fn ray(&self, x: f32, y: f32) -> Ray {
+        let direction = self.corner + x * self.step_x + y * self.step_y;
+        Ray::new(self.eye, direction / direction.length())
+    }
+}

@@ -1,0 +1,178 @@
+//! What a rendering is asked for, and why it may be refused.
+
+use std::fmt;
+
+use crate::camera_rays::CameraError;
+use crate::integrators::{INTEGRATORS, Integrator};
+
+/// What a rendering is asked for.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// Columns of the image.
+    pub width: u32,
+    /// Rows of the image.
+    pub height: u32,
+    /// Primary rays per pixel: 1 goes through the pixel's centre, more are spread over it.
+    pub samples: u32,
+    /// How often light may be mirrored or let through on its way to the eye: 0 shows neither. What lies beyond is black.
+    pub max_depth: u32,
+    /// Rays that would count less than this in a pixel, in units of white, are not traced. A step of an 8-bit sRGB
+    /// image is 0.0003 in the darkest and 0.009 in the brightest parts.
+    pub cutoff: f32,
+    /// Whether transparent surfaces cast black shadows, rather than weakening and colouring the light.
+    pub opaque_shadows: bool,
+    /// The method of following light.
+    pub integrator: &'static Integrator,
+}
+
+impl Default for RenderOptions {
+    /// 1280 x 800 pixels of one ray each, depth 10, a cut-off of 1/1024.
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 800,
+            samples: 1,
+            max_depth: 10,
+            cutoff: 1.0 / 1024.0,
+            opaque_shadows: false,
+            integrator: &INTEGRATORS[0],
+        }
+    }
+}
+
+impl RenderOptions {
+    /// The most pixels of an image: about what a machine of 4 GiB can hold while it renders.
+    pub const MOST_PIXELS: u64 = 1 << 27;
+    /// The most rays per pixel.
+    pub const MOST_SAMPLES: u32 = 1 << 20;
+    /// The greatest depth. It bounds the stack that the recursion needs.
+    pub const GREATEST_DEPTH: u32 = 64;
+    /// The smallest cut-off. With the depth it bounds the rays that one primary ray can cause.
+    pub const SMALLEST_CUTOFF: f32 = 1e-5;
+
+    /// The largest memory that rendering the image takes, in bytes, beside the scene: tiles and image, 12 bytes a pixel.
+    pub fn memory_bytes(&self) -> u64 {
+        24 * u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Whether the options make sense.
+    ///
+    /// # Errors
+    ///
+    /// Which one does not.
+    pub fn validate(&self) -> Result<(), RenderError> {
+        let Self { width, height, .. } = *self;
+        if width == 0 || height == 0 {
+            return Err(RenderError::EmptyImage { width, height });
+        }
+        if u64::from(width) * u64::from(height) > Self::MOST_PIXELS {
+            return Err(RenderError::ImageTooLarge { width, height, bytes: self.memory_bytes() });
+        }
+        if !(1..=Self::MOST_SAMPLES).contains(&self.samples) {
+            return Err(RenderError::Samples { samples: self.samples });
+        }
+        if self.max_depth > Self::GREATEST_DEPTH {
+            return Err(RenderError::Depth { max_depth: self.max_depth });
+        }
+        if !(Self::SMALLEST_CUTOFF..=1.0).contains(&self.cutoff) {
+            return Err(RenderError::Cutoff { cutoff: self.cutoff });
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no image.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// Somebody asked to stop.
+    Cancelled,
+    /// No columns or no rows.
+    EmptyImage {
+        /// Columns asked for.
+        width: u32,
+        /// Rows asked for.
+        height: u32,
+    },
+    /// More pixels than [`RenderOptions::MOST_PIXELS`].
+    ImageTooLarge {
+        /// Columns asked for.
+        width: u32,
+        /// Rows asked for.
+        height: u32,
+        /// The memory that it would take.
+        bytes: u64,
+    },
+    /// The system refuses the memory.
+    OutOfMemory {
+        /// The memory that the rendering takes.
+        bytes: u64,
+    },
+    /// No rays per pixel, or more than [`RenderOptions::MOST_SAMPLES`].
+    Samples {
+        /// Rays asked for.
+        samples: u32,
+    },
+    /// Deeper than [`RenderOptions::GREATEST_DEPTH`].
+    Depth {
+        /// The depth asked for.
+        max_depth: u32,
+    },
+    /// Not between [`RenderOptions::SMALLEST_CUTOFF`] and 1.
+    Cutoff {
+        /// The cut-off asked for.
+        cutoff: f32,
+    },
+    /// Nothing can be seen through the camera.
+    Camera(CameraError),
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let gib = |bytes: u64| bytes as f64 / (1u64 << 30) as f64;
+        match self {
+            Self::Cancelled => write!(f, "cancelled"),
+            Self::EmptyImage { width, height } => {
+                write!(f, "an image of {width}x{height} pixels is empty: both must be at least 1")
+            }
+            Self::ImageTooLarge { width, height, bytes } => {
+                let most = RenderOptions::MOST_PIXELS;
+                write!(
+                    f,
+                    "an image of {width}x{height} pixels would take {:.1} GiB of memory: at most {most} pixels ({:.1} \
+                     GiB) are allowed",
+                    gib(*bytes),
+                    gib(24 * most)
+                )
+            }
+            Self::OutOfMemory { bytes } => {
+                write!(
+                    f,
+                    "the image takes {:.1} GiB of memory, which the system refuses",
+                    gib(*bytes)
+                )
+            }
+            Self::Samples { samples } => {
+                let most = RenderOptions::MOST_SAMPLES;
+                write!(f, "{samples} samples per pixel: must be from 1 to {most}")
+            }
+            Self::Depth { max_depth } => {
+                let greatest = RenderOptions::GREATEST_DEPTH;
+                write!(f, "a depth of {max_depth}: must be from 0 to {greatest}")
+            }
+            Self::Cutoff { cutoff } => {
+                let smallest = RenderOptions::SMALLEST_CUTOFF;
+                write!(f, "a cut-off of {cutoff}: must be from {smallest} to 1")
+            }
+            Self::Camera(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for RenderError {}
+
+impl From<CameraError> for RenderError {
+    fn from(error: CameraError) -> Self {
+        Self::Camera(error)
+    }
+}

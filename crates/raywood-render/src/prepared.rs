@@ -1,0 +1,166 @@
+//! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
+
+use raywood::{Aabb, BuildError, Bvh, Geometry, Joined, Spheres, TriangleMesh, Vec3};
+use raywood_scene::{Material, MaterialId, Pattern, Rgb, Scene};
+
+/// All surfaces of a scene: first its triangles, then its spheres.
+pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
+
+/// A scene made ready for rays. Borrows the scene, which therefore cannot change meanwhile.
+pub struct PreparedScene<'a> {
+    scene: &'a Scene,
+    bvh: Bvh<Surfaces<'a>>,
+    materials: Vec<SurfaceMaterial>,
+    triangle_count: u32,
+    transmissive_bounds: Vec<Aabb>,
+}
+
+impl<'a> PreparedScene<'a> {
+    /// Builds the structure over the scene's surfaces, on the threads of the current rayon pool.
+    ///
+    /// A surface whose material number does not exist gets the default material.
+    ///
+    /// # Errors
+    ///
+    /// The structure cannot be built.
+    pub fn new(scene: &'a Scene) -> Result<Self, BuildError> {
+        let surfaces = Joined { first: &scene.mesh.triangles, second: &scene.spheres };
+        let bvh = Bvh::build(surfaces)?;
+        // The default comes last, for the surfaces without a material.
+        let materials: Vec<_> = scene
+            .materials
+            .iter()
+            .chain([&Material::default()])
+            .map(SurfaceMaterial::new)
+            .collect();
+        let mut prepared = Self {
+            scene,
+            bvh,
+            materials,
+            triangle_count: scene.mesh.triangles.len() as u32,
+            transmissive_bounds: Vec::new(),
+        };
+        prepared.transmissive_bounds = prepared.find_transmissive_bounds();
+        Ok(prepared)
+    }
+
+    /// The scene as it was given.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The structure over the scene's surfaces.
+    pub fn bvh(&self) -> &Bvh<Surfaces<'a>> {
+        &self.bvh
+    }
+
+    /// The number of the triangle that a primitive is, or else that of the sphere.
+    #[inline]
+    pub(crate) fn which(&self, primitive: u32) -> Which {
+        match primitive.checked_sub(self.triangle_count) {
+            None => Which::Triangle(primitive),
+            Some(sphere) => Which::Sphere(sphere),
+        }
+    }
+
+    /// The material of a primitive.
+    #[inline]
+    pub(crate) fn material_of(&self, primitive: u32) -> &SurfaceMaterial {
+        &self.materials[self.material_index(primitive)]
+    }
+
+    #[inline]
+    fn material_index(&self, primitive: u32) -> usize {
+        let id = match self.which(primitive) {
+            Which::Triangle(triangle) => self.scene.mesh.materials.get(triangle as usize),
+            Which::Sphere(sphere) => self.scene.sphere_materials.get(sphere as usize),
+        };
+        let last = self.materials.len() - 1;
+        id.map_or(last, |&id: &MaterialId| (id as usize).min(last))
+    }
+
+    /// Boxes outside of which no surface lets light through: empty if none does anywhere.
+    pub(crate) fn transmissive_bounds(&self) -> &[Aabb] {
+        &self.transmissive_bounds
+    }
+
+    /// One box per material that lets light through, or one around all of them if they are many.
+    fn find_transmissive_bounds(&self) -> Vec<Aabb> {
+        if !self.materials.iter().any(|material| material.transmissive) {
+            return Vec::new();
+        }
+        let mut bounds = vec![Aabb::EMPTY; self.materials.len()];
+        for primitive in 0..self.bvh.geometry().len() as u32 {
+            let index = self.material_index(primitive);
+            if self.materials[index].transmissive {
+                bounds[index] = bounds[index].union(self.bvh.geometry().bounds(primitive));
+            }
+        }
+        bounds.retain(|b| !b.is_empty());
+        if bounds.len() > MOST_TRANSMISSIVE_BOUNDS {
+            bounds = vec![bounds.into_iter().fold(Aabb::EMPTY, Aabb::union)];
+        }
+        bounds
+    }
+}
+
+/// More boxes than this cost a shadow ray more than they save.
+const MOST_TRANSMISSIVE_BOUNDS: usize = 8;
+
+/// Which kind of surface a primitive is, and its number among those.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Which {
+    /// A triangle of the mesh.
+    Triangle(u32),
+    /// An analytic sphere.
+    Sphere(u32),
+}
+
+/// What shading reads of a [`Material`]: the same numbers, made safe (in range, not NaN), with the questions asked at
+/// every hit already answered.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceMaterial {
+    pub(crate) diffuse: Rgb,
+    pub(crate) pattern: Pattern,
+    pub(crate) specular: Rgb,
+    pub(crate) shininess: f32,
+    pub(crate) mirror: Rgb,
+    pub(crate) transmission: Rgb,
+    pub(crate) ior: f32,
+    pub(crate) absorption: Vec3,
+    pub(crate) emission: Rgb,
+    /// Whether any light gets through.
+    pub(crate) transmissive: bool,
+    /// Whether the surface mirrors as `mirror` says.
+    pub(crate) mirrors: bool,
+    /// Whether lights leave a highlight.
+    pub(crate) shiny: bool,
+}
+
+impl SurfaceMaterial {
+    fn new(material: &Material) -> Self {
+        let finite_or = |x: f32, other: f32| if x.is_finite() { x } else { other };
+        let positive = |color: Rgb| Rgb::from(color.to_array().map(|x| finite_or(x, 0.0).max(0.0)));
+        let share = |color: Rgb| positive(color).min(Rgb::ONE);
+
+        let transmission = share(material.transmission);
+        let transmissive = transmission.max_element() > 0.0;
+        let mirror = if transmissive { Rgb::ZERO } else { share(material.mirror) };
+        let specular = positive(material.specular);
+        let ior = finite_or(material.ior, 1.0);
+        Self {
+            diffuse: positive(material.diffuse),
+            pattern: material.pattern,
+            specular,
+            shininess: finite_or(material.shininess, 50.0).max(0.0),
+            mirror,
+            transmission,
+            ior: if ior > 0.0 { ior } else { 1.0 },
+            absorption: positive(material.absorption),
+            emission: positive(material.emission),
+            transmissive,
+            mirrors: mirror.max_element() > 0.0,
+            shiny: specular.max_element() > 0.0,
+        }
+    }
+}

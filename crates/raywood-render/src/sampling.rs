@@ -1,0 +1,145 @@
+//! Where in and around a pixel its rays go: Owen-scrambled Sobol points, warped to a tent filter.
+//!
+//! The points of a pixel are the first two dimensions of Sobol's sequence (1967), a (0,2)-sequence: any first 2^k of
+//! them put one point into each of the 2^k boxes of every shape that halving makes. Each pixel scrambles them in its
+//! own way, which keeps that property and takes the structure out (Owen 1995), by the hash of Laine and Karras
+//! (2011) as refined in Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
+
+/// The points of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelSamples {
+    samples: u32,
+    seeds: [u32; 2],
+}
+
+impl PixelSamples {
+    /// The points of the pixel in column `x` and row `y`, `samples` of them.
+    #[inline]
+    pub fn new(x: u32, y: u32, samples: u32) -> Self {
+        let pixel = mix(x ^ mix(y ^ 0x5bd1_e995));
+        Self { samples, seeds: [mix(pixel ^ 0x68bc_21eb), mix(pixel ^ 0x02e5_be93)] }
+    }
+
+    /// Point `index` in the unit square, both coordinates at least 0 and below 1.
+    #[inline]
+    pub fn unit_square(&self, index: u32) -> [f32; 2] {
+        let points = [index, sobol_second(index).reverse_bits()];
+        [0, 1].map(|dimension| {
+            // The scrambled bits, most significant first, as a fraction; 24 of them fit a float exactly.
+            let bits = owen_scramble_reversed(points[dimension], self.seeds[dimension]);
+            (bits.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
+        })
+    }
+
+    /// The offset of ray `index` from the pixel's centre, in pixels.
+    ///
+    /// Of a single ray it is zero. More are spread like a tent of two pixels' width: filter importance sampling (Ernst,
+    /// Stamminger and Greiner 2006), so that all rays of a pixel weigh the same and pixels stay independent.
+    #[inline]
+    pub fn offset(&self, index: u32) -> [f32; 2] {
+        if self.samples <= 1 {
+            return [0.0, 0.0];
+        }
+        self.unit_square(index).map(tent)
+    }
+}
+
+/// A uniform number in 0 to 1 as one distributed like a tent from -1 to 1: the inverse of its cumulative distribution.
+#[inline]
+fn tent(u: f32) -> f32 {
+    if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() }
+}
+
+/// The second dimension of Sobol's sequence as a binary fraction. Its direction numbers are the rows of Pascal's
+/// triangle modulo two, each made from the last by `v ^ (v >> 1)`. (The first dimension is the index, bits reversed.)
+#[inline]
+fn sobol_second(index: u32) -> u32 {
+    let (mut bits, mut result, mut direction) = (index, 0, 1 << 31);
+    while bits != 0 {
+        if bits & 1 != 0 {
+            result ^= direction;
+        }
+        direction ^= direction >> 1;
+        bits >>= 1;
+    }
+    result
+}
+
+/// Flips each bit as a hash of the seed and of the bits below it says: Owen's scrambling for a fraction whose bits are
+/// reversed, where multiplications carry upwards only (Laine and Karras 2011).
+#[inline]
+fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
+    x = x.wrapping_add(seed);
+    x ^= x.wrapping_mul(0x6c50_b47c);
+    x ^= x.wrapping_mul(0xb82f_1e52);
+    x ^= x.wrapping_mul(0xc7af_e638);
+    x ^= x.wrapping_mul(0x8d22_f6e6);
+    x
+}
+
+/// A hash in which every input bit reaches every output bit (the finalizer of MurmurHash3).
+#[inline]
+fn mix(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x85eb_ca6b);
+    x ^= x >> 13;
+    x = x.wrapping_mul(0xc2b2_ae35);
+    x ^ (x >> 16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every box shape of 2^k boxes holds one each of the first 2^k points.
+    #[test]
+    fn points_are_stratified_in_every_shape_of_box() {
+        for (x, y) in [(0, 0), (1, 0), (0, 1), (637, 211), (u32::MAX, 5)] {
+            for k in 0..=8 {
+                let samples = PixelSamples::new(x, y, 1 << k);
+                for columns_log2 in 0..=k {
+                    let (columns, rows) = (1 << columns_log2, 1 << (k - columns_log2));
+                    let mut seen = vec![false; columns * rows];
+                    for index in 0..1 << k {
+                        let [u, v] = samples.unit_square(index);
+                        assert!((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v));
+                        let place =
+                            (v * rows as f32) as usize * columns + (u * columns as f32) as usize;
+                        assert!(!seen[place], "two points in a box of {columns} x {rows}");
+                        seen[place] = true;
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_sample_is_the_pixels_centre() {
+        assert_eq!(PixelSamples::new(3, 4, 1).offset(0), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn pixels_differ_and_each_is_repeatable() {
+        let first = PixelSamples::new(3, 4, 16).unit_square(5);
+        assert_eq!(first, PixelSamples::new(3, 4, 16).unit_square(5));
+        assert_ne!(first, PixelSamples::new(4, 3, 16).unit_square(5));
+        assert_ne!(first, PixelSamples::new(3, 5, 16).unit_square(5));
+    }
+
+    /// The mean and variance of a tent from -1 to 1 are 0 and 1/6.
+    #[test]
+    fn offsets_follow_the_tent() {
+        let samples = PixelSamples::new(10, 20, 4096);
+        for axis in [0, 1] {
+            let offsets = (0..4096).map(|index| f64::from(samples.offset(index)[axis]));
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for offset in offsets {
+                assert!((-1.0..=1.0).contains(&offset));
+                sum += offset;
+                squares += offset * offset;
+            }
+            assert!((sum / 4096.0).abs() < 1e-3);
+            assert!((squares / 4096.0 - 1.0 / 6.0).abs() < 1e-3);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The image cut into square tiles, in an order that keeps neighbours together.
+
+use raywood_scene::Rgb;
+
+/// The edge of a tile in pixels.
+pub(crate) const TILE_SIZE: u32 = 16;
+
+/// A rectangle of pixels: a whole square, or what is left of one at the image's right and lower edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tile {
+    /// Its first column.
+    pub(crate) x: u32,
+    /// Its first row.
+    pub(crate) y: u32,
+    /// Columns, 1 to [`TILE_SIZE`].
+    pub(crate) width: u32,
+    /// Rows, 1 to [`TILE_SIZE`].
+    pub(crate) height: u32,
+}
+
+/// The colours of a tile's pixels, row after row, each row [`TILE_SIZE`] long.
+pub(crate) type TilePixels = [Rgb; (TILE_SIZE * TILE_SIZE) as usize];
+
+/// All tiles of an image along Morton's curve (1966): tiles that are near in time are near in the picture, so the
+/// threads share what lies in the caches.
+pub(crate) fn tiles_in_morton_order(width: u32, height: u32) -> Vec<Tile> {
+    let mut tiles = Vec::new();
+    for row in 0..height.div_ceil(TILE_SIZE) {
+        for column in 0..width.div_ceil(TILE_SIZE) {
+            let (x, y) = (column * TILE_SIZE, row * TILE_SIZE);
+            tiles.push(Tile {
+                x,
+                y,
+                width: TILE_SIZE.min(width - x),
+                height: TILE_SIZE.min(height - y),
+            });
+        }
+    }
+    tiles.sort_unstable_by_key(|tile| morton(tile.x / TILE_SIZE, tile.y / TILE_SIZE));
+    tiles
+}
+
+/// The bits of two numbers in turn: x the even ones, y the odd ones.
+fn morton(x: u32, y: u32) -> u64 {
+    spread(x) | spread(y) << 1
+}
+
+/// Puts a zero between any two bits.
+fn spread(x: u32) -> u64 {
+    let mut x = u64::from(x);
+    x = (x | x << 16) & 0x0000_ffff_0000_ffff;
+    x = (x | x << 8) & 0x00ff_00ff_00ff_00ff;
+    x = (x | x << 4) & 0x0f0f_0f0f_0f0f_0f0f;
+    x = (x | x << 2) & 0x3333_3333_3333_3333;
+    (x | x << 1) & 0x5555_5555_5555_5555
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_each_pixel_once() {
+        for (width, height) in [(1, 1), (16, 16), (17, 33), (100, 7), (5, 300)] {
+            let mut covered = vec![0; (width * height) as usize];
+            for tile in tiles_in_morton_order(width, height) {
+                for y in tile.y..tile.y + tile.height {
+                    for x in tile.x..tile.x + tile.width {
+                        covered[(y * width + x) as usize] += 1;
+                    }
+                }
+            }
+            assert!(covered.iter().all(|&count| count == 1), "{width} x {height}");
+        }
+    }
+
+    #[test]
+    fn the_order_is_mortons() {
+        let order: Vec<_> =
+            tiles_in_morton_order(64, 64).iter().map(|t| (t.x / 16, t.y / 16)).collect();
+        assert_eq!(order[..8], [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (3, 0), (2, 1), (3, 1)]);
+        assert_eq!(order[8], (0, 2));
+    }
+}
