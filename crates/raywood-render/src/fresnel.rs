@@ -26,6 +26,11 @@ pub struct Interface {
 pub fn dielectric(cos_incident: f32, eta: f32) -> Interface {
     let cos_i = cos_incident.clamp(0.0, 1.0);
 
+    // Equal indices never mirror; rounding must not make a total reflection of a grazing ray.
+    if eta == 1.0 {
+        return Interface { reflectance: 0.0, cos_transmitted: cos_i };
+    }
+
     // Snell: sin_t = eta * sin_i. Where that exceeds one, no light gets through.
     let sin2_t = eta * eta * ((1.0 - cos_i) * (1.0 + cos_i));
     if sin2_t >= 1.0 {
@@ -33,10 +38,6 @@ pub fn dielectric(cos_incident: f32, eta: f32) -> Interface {
     }
     let cos_t = (1.0 - sin2_t).sqrt();
 
-    // Equal indices at grazing angle would divide zero by zero; equal indices never mirror.
-    if eta == 1.0 {
-        return Interface { reflectance: 0.0, cos_transmitted: cos_t };
-    }
     let perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     let reflectance = 0.5 * (perpendicular * perpendicular + parallel * parallel);
