@@ -122,9 +122,9 @@ fn glass_absorbs_by_the_length_of_the_way_inside() {
 /// the eye, and the other way round.
 #[test]
 fn a_slab_lets_through_and_mirrors_the_sum_over_all_inner_reflections() {
-    let (f, thickness) = (0.04f32, 2.0);
+    let (f, thickness) = (0.04f32, 2.0f32);
     let glass = Material { absorption: Vec3::splat(0.1), ..clear(1.5) };
-    let e = (-0.1 * thickness as f32).exp();
+    let e = (-0.1 * thickness).exp();
     let through = (1.0 - f).powi(2) * e / (1.0 - (f * e).powi(2));
     let back = f + f * (1.0 - f).powi(2) * e * e / (1.0 - (f * e).powi(2));
     for (below, above, expected) in [(1.0, 0.0, through), (0.0, 1.0, back)] {
