@@ -1,17 +1,22 @@
 //! Scenes for ray tracing: what there is, what it looks like, what lights it and from where it is seen.
 
+pub mod builtin;
 mod camera;
 mod color;
 mod framing;
 mod light;
 mod material;
 mod mesh;
+mod noise;
+mod pattern;
 mod scene;
 
+pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
 pub use framing::{ambient, default_camera, default_lights, frame_bounds, guess_up};
 pub use light::{Light, LightKind};
-pub use material::{Material, MaterialId, Pattern};
+pub use material::{Material, MaterialId};
 pub use mesh::Mesh;
+pub use pattern::Pattern;
 pub use scene::{Background, Scene};

@@ -2,7 +2,7 @@
 
 use raywood::Vec3;
 
-use crate::Rgb;
+use crate::{Pattern, Rgb};
 
 /// The number of a material in its scene.
 pub type MaterialId = u32;
@@ -54,19 +54,4 @@ impl Default for Material {
             emission: Rgb::ZERO,
         }
     }
-}
-
-/// What modulates a diffuse colour over a surface, computed from the point in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Pattern {
-    /// Nothing: one colour all over.
-    #[default]
-    Plain,
-    /// Cubes of alternating colour: the diffuse colour, and `other`.
-    Checker {
-        /// The second colour.
-        other: Rgb,
-        /// The edge of a cube.
-        size: f32,
-    },
 }

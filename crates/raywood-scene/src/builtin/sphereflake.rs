@@ -1,0 +1,137 @@
+//! `sphereflake`: the fractal of spheres of Haines, "A Proposal for Standard Graphics Environments", 1987.
+
+use raywood::{Spheres, Vec3};
+
+use super::modelling::{MeshBuilder, Part, Placement};
+use super::{Builtin, Parameter, Values};
+use crate::{Background, Camera, Light, LightKind, Material, MaterialId, Pattern, Rgb, Scene};
+
+pub(super) const ENTRY: Builtin = Builtin {
+    name: "sphereflake",
+    description: "a fractal of mirroring spheres, nine on each, (9^(depth+1) - 1) / 8 in all",
+    parameters: &[Parameter {
+        name: "depth",
+        description: "how often spheres carry smaller ones: 5 makes 66,430 spheres, 7 makes 5,380,840",
+        default: 5,
+        min: 0,
+        max: 7,
+    }],
+    build,
+};
+
+const FLOOR: u32 = 0;
+/// The materials of the spheres begin here: one per generation, in a cycle.
+const METALS: u32 = 1;
+const METAL_COUNT: u32 = 4;
+
+fn build(values: &Values) -> Scene {
+    let depth = values.get("depth") as u32;
+    let mut flake = Flake::with_capacity((9usize.pow(depth + 1) - 1) / 8);
+    // The whole flake leans a little towards the camera, to show its crown.
+    let axis = Vec3::new(0.10, 1.0, 0.28).normalize_or_zero();
+    flake.grow(Vec3::new(0.0, 1.98, 0.0), 1.0, axis, depth);
+
+    let mut floor = Part::default();
+    floor.add_polygon(&[
+        Vec3::new(-60.0, 0.0, 60.0),
+        Vec3::new(60.0, 0.0, 60.0),
+        Vec3::new(60.0, 0.0, -60.0),
+        Vec3::new(-60.0, 0.0, -60.0),
+    ]);
+    let mut mesh = MeshBuilder::default();
+    mesh.add(&floor, &Placement::IDENTITY, FLOOR);
+
+    Scene {
+        mesh: mesh.finish(),
+        spheres: Spheres::new(flake.spheres).expect("the spheres are finite"),
+        sphere_materials: flake.materials,
+        materials: materials(),
+        lights: lights(),
+        cameras: vec![Camera {
+            name: "camera".into(),
+            eye: Vec3::new(-2.2, 3.1, 6.6),
+            target: Vec3::new(0.05, 1.78, 0.0),
+            up: Vec3::Y,
+            fov_y: 36.0,
+        }],
+        background: Background {
+            zenith: Rgb::new(0.07, 0.13, 0.30),
+            horizon: Rgb::new(0.74, 0.70, 0.66),
+            nadir: Rgb::new(0.12, 0.12, 0.13),
+        },
+        ..Scene::default()
+    }
+}
+
+/// The spheres, and the material of each.
+struct Flake {
+    spheres: Vec<(Vec3, f32)>,
+    materials: Vec<MaterialId>,
+}
+
+impl Flake {
+    fn with_capacity(count: usize) -> Self {
+        Self { spheres: Vec::with_capacity(count), materials: Vec::with_capacity(count) }
+    }
+
+    /// Adds a sphere and, `depth` generations deep, nine spheres of a third of its size on it: six around its equator and three
+    /// around the pole to which `axis` points.
+    fn grow(&mut self, center: Vec3, radius: f32, axis: Vec3, depth: u32) {
+        self.spheres.push((center, radius));
+        self.materials.push(METALS + depth % METAL_COUNT);
+        if depth == 0 {
+            return;
+        }
+        let (s, t) = axis.orthonormal_basis();
+        let ring = |count: u32, turn: f32, latitude: f32| {
+            let (up, out) = latitude.to_radians().sin_cos();
+            (0..count).map(move |i| {
+                let angle = (turn + 360.0 * i as f32 / count as f32).to_radians();
+                (out * (angle.cos() * s + angle.sin() * t) + up * axis).normalize_or_zero()
+            })
+        };
+        for direction in ring(6, 0.0, 0.0).chain(ring(3, 30.0, 54.735_6)) {
+            let child = radius / 3.0;
+            self.grow(center + (radius + child) * direction, child, direction, depth - 1);
+        }
+    }
+}
+
+fn lights() -> Vec<Light> {
+    let light = |name: &str, kind, intensity| Light { name: name.into(), kind, intensity };
+    let sun = Vec3::new(-0.62, -0.70, -0.36).normalize_or_zero();
+    vec![
+        light("ambient", LightKind::Ambient, Rgb::new(0.13, 0.15, 0.19)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(1.05, 0.95, 0.80)),
+        light(
+            "fill",
+            LightKind::Point { position: Vec3::new(-7.0, 4.0, 5.0) },
+            Rgb::new(9.0, 12.0, 17.0),
+        ),
+    ]
+}
+
+/// The materials, in the order of their numbers.
+fn materials() -> Vec<Material> {
+    let metal = |name: &str, color: Rgb| Material {
+        name: name.into(),
+        diffuse: 0.28 * color,
+        specular: Rgb::splat(0.5),
+        shininess: 220.0,
+        mirror: 0.62 * color,
+        ..Material::default()
+    };
+    vec![
+        Material {
+            name: "floor".into(),
+            diffuse: Rgb::new(0.42, 0.40, 0.37),
+            pattern: Pattern::Checker { other: Rgb::new(0.20, 0.21, 0.23), size: 1.5 },
+            mirror: Rgb::splat(0.05),
+            ..Material::default()
+        },
+        metal("silver", Rgb::new(0.95, 0.94, 0.92)),
+        metal("gold", Rgb::new(1.00, 0.78, 0.40)),
+        metal("copper", Rgb::new(0.96, 0.60, 0.44)),
+        metal("steel", Rgb::new(0.62, 0.72, 0.86)),
+    ]
+}
