@@ -35,11 +35,6 @@ impl MeshBuilder {
     pub fn finish(self) -> Mesh {
         let triangles = TriangleMesh::new(self.all.positions, self.all.triangles)
             .expect("parts have finite positions and indices in range");
-        Mesh {
-            triangles,
-            normals: self.all.normals,
-            colors: Vec::new(),
-            materials: self.materials,
-        }
+        Mesh { triangles, normals: self.all.normals, colors: Vec::new(), materials: self.materials }
     }
 }

@@ -2,6 +2,8 @@
 
 use raywood::Vec3;
 
+use super::Placement;
+
 /// A piece of surface in its own coordinates: vertices with normals, and triangles whose front is where they are counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
@@ -108,6 +110,16 @@ impl Part {
         self.triangles.extend((1..last).map(|i| [first, first + i, first + i + 1]));
     }
 
+    /// A copy in its place.
+    #[must_use]
+    pub fn placed(&self, placement: &Placement) -> Self {
+        Self {
+            positions: self.positions.iter().map(|&p| placement.point(p)).collect(),
+            normals: self.normals.iter().map(|&n| placement.direction(n)).collect(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
     /// Adds a copy of another part.
     pub fn add_part(&mut self, other: &Self) {
         let first = self.positions.len() as u32;
@@ -138,9 +150,7 @@ mod tests {
     fn a_flat_grid_faces_up_and_has_two_triangles_a_cell() {
         let mut part = Part::default();
         // u along x, v along -z: u x v points up.
-        part.add_grid(Cells::open(3), Cells::open(2), |i, j| {
-            Vec3::new(i as f32, 0.0, -(j as f32))
-        });
+        part.add_grid(Cells::open(3), Cells::open(2), |i, j| Vec3::new(i as f32, 0.0, -(j as f32)));
         assert_eq!((part.positions.len(), part.triangles.len()), (12, 12));
         assert!(part.normals.iter().all(|&n| n == Vec3::Y));
     }

@@ -29,13 +29,7 @@ impl Profile {
 
     /// Goes on along a smooth cubic curve (Bezier), cut into `segments`, drawn by its two control points.
     #[must_use]
-    pub fn curve_to(
-        mut self,
-        control: [[f32; 2]; 2],
-        x: f32,
-        y: f32,
-        segments: usize,
-    ) -> Self {
+    pub fn curve_to(mut self, control: [[f32; 2]; 2], x: f32, y: f32, segments: usize) -> Self {
         let [p0, p1, p2, p3] = [self.end, control[0], control[1], [x, y]];
         let point = |t: f32| {
             let s = 1.0 - t;

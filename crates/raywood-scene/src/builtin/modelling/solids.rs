@@ -15,8 +15,7 @@ pub fn cuboid(min: Vec3, max: Vec3) -> Part {
     };
     let mut part = Part::default();
     // Each face by its corners, counter-clockwise from outside; bit 0 of a corner's number is x, bit 1 y, bit 2 z.
-    for face in
-        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+    for face in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
     {
         part.add_polygon(&face.map(corner));
     }
@@ -27,8 +26,10 @@ pub fn cuboid(min: Vec3, max: Vec3) -> Part {
 pub fn bar(from: Vec3, to: Vec3, width: f32) -> Part {
     let along = (to - from).normalize_or_zero();
     let (s, t) = along.orthonormal_basis();
-    let mut part =
-        cuboid(Vec3::new(-0.5 * width, -0.5 * width, 0.0), Vec3::new(0.5 * width, 0.5 * width, 1.0));
+    let mut part = cuboid(
+        Vec3::new(-0.5 * width, -0.5 * width, 0.0),
+        Vec3::new(0.5 * width, 0.5 * width, 1.0),
+    );
     for p in &mut part.positions {
         *p = from + p.x * s + p.y * t + p.z * (to - from);
     }

@@ -3,8 +3,8 @@
 mod colors;
 mod heights;
 
-use raywood::{TriangleMesh, Vec3};
 use rayon::prelude::*;
+use raywood::{TriangleMesh, Vec3};
 
 use super::{Builtin, Parameter, Values};
 use crate::{Background, Camera, Light, LightKind, Material, MaterialId, Mesh, Rgb, Scene};
