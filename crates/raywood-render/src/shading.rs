@@ -1,7 +1,7 @@
 //! The surface at a hit, ready for shading: normals turned to the viewer, the material, the diffuse colour there.
 
 use raywood::{Hit, Ray, SurfacePoint, Vec3};
-use raywood_scene::{Pattern, Rgb};
+use raywood_scene::Rgb;
 
 use crate::PreparedScene;
 use crate::fresnel::reflect;
@@ -37,7 +37,7 @@ impl<'a> Surface<'a> {
             outside,
             geometric_normal,
             normal: geometric_normal,
-            diffuse: pattern_color(material, &point),
+            diffuse: material.pattern.color(material.diffuse, point.position),
         };
 
         // Interpolate what the mesh gives per vertex.
@@ -110,21 +110,6 @@ pub(crate) fn keep_on_side(direction: Vec3, normal: Vec3) -> Vec3 {
         return direction;
     }
     (direction + (SMALLEST_COSINE - cosine) * normal).normalize_or_zero()
-}
-
-/// The diffuse colour of a material at a point.
-#[inline]
-fn pattern_color(material: &SurfaceMaterial, point: &SurfacePoint) -> Rgb {
-    match material.pattern {
-        Pattern::Plain => material.diffuse,
-        Pattern::Checker { other, size } => {
-            // A floor often lies exactly between two layers of cubes, where rounding would choose. A thousandth below
-            // the surface the choice is clear.
-            let p = point.position / size - 1e-3 * point.normal;
-            let parity = (p.x.floor() + p.y.floor() + p.z.floor()).rem_euclid(2.0);
-            if parity == 0.0 { material.diffuse } else { other }
-        }
-    }
 }
 
 /// A quantity given per vertex, at a hit; `None` where the mesh does not give it.
