@@ -46,11 +46,11 @@ impl TreeStats {
         while let Some((node, level)) = pending.pop() {
             let probability =
                 if root_area > 0.0 { half_area(&node.bounds()) / root_area } else { 1.0 };
-            stats.q += probability * (c_aabb + f64::from(node.count) * c_tri);
+            stats.q += probability * (c_aabb + f64::from(node.count()) * c_tri);
             stats.depth = stats.depth.max(level);
             if node.is_leaf() {
                 stats.leaves += 1;
-                stats.max_leaf_primitives = stats.max_leaf_primitives.max(node.count as usize);
+                stats.max_leaf_primitives = stats.max_leaf_primitives.max(node.count() as usize);
             } else {
                 pending.extend(tree.children(node).map(|child| (child, level + 1)));
             }

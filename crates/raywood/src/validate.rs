@@ -119,9 +119,9 @@ impl Bvh2 {
                 false => Err(ValidationError::NotEnclosed { node: number, bounds, content }),
             };
             let (first, end) = if node.is_leaf() {
-                (node.left_first as usize, node.left_first as usize + node.count as usize)
+                (node.left_first() as usize, node.left_first() as usize + node.count() as usize)
             } else {
-                (node.left_first as usize, node.left_first as usize + 2)
+                (node.left_first() as usize, node.left_first() as usize + 2)
             };
             if node.is_leaf() {
                 let Some(leaf) = self.primitive_indices().get(first..end) else {

@@ -165,13 +165,12 @@ fn close_gaps(pool: &[Node]) -> Vec<Node> {
     // Parents whose children are still to be copied, by their new number.
     let mut pending = vec![0usize];
     while let Some(parent) = pending.pop() {
-        let Node { left_first, .. } = nodes[parent];
         if nodes[parent].is_leaf() {
             continue;
         }
-        let left = nodes.len();
-        nodes[parent].left_first = left as u32;
-        nodes.extend_from_slice(&pool[left_first as usize..left_first as usize + 2]);
+        let (left, left_in_pool) = (nodes.len(), nodes[parent].left_first() as usize);
+        nodes[parent] = nodes[parent].with_children_at(left as u32);
+        nodes.extend_from_slice(&pool[left_in_pool..left_in_pool + 2]);
         pending.push(left + 1);
         pending.push(left);
     }

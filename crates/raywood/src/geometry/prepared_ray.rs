@@ -17,8 +17,12 @@ pub struct PreparedRay {
     pub t_max: f32,
     /// One over each coordinate of the direction; infinite where that is zero.
     pub reciprocal: Vec3,
+    /// Which corner of a box the ray's entry planes belong to, per axis: 0 the one of smallest coordinates, 1 the other.
+    pub(crate) entry_corners: [usize; 3],
     /// The axes in an order in which the last is the direction's largest and the triangle's orientation is kept.
     pub(super) axes: [usize; 3],
+    /// The origin with its coordinates in that order.
+    pub(super) permuted_origin: [f32; 3],
     /// The shear that takes the direction to `(0, 0, 1)`: slopes along the first two axes, scale along the last.
     pub(super) shear: [f32; 3],
 }
@@ -39,13 +43,16 @@ impl PreparedRay {
         if d[z] < 0.0 {
             std::mem::swap(&mut x, &mut y);
         }
+        let reciprocal = Vec3::new(1.0 / d.x, 1.0 / d.y, 1.0 / d.z);
         Some(Self {
             origin: ray.origin,
             direction: d,
             t_min: ray.t_min,
             t_max: ray.t_max,
-            reciprocal: Vec3::new(1.0 / d.x, 1.0 / d.y, 1.0 / d.z),
+            reciprocal,
+            entry_corners: reciprocal.to_array().map(|r| usize::from(r < 0.0)),
             axes: [x, y, z],
+            permuted_origin: [ray.origin[x], ray.origin[y], ray.origin[z]],
             shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
         })
     }

@@ -47,11 +47,11 @@ pub(super) fn intersect_triangle(
 }
 
 /// A vertex in the ray's frame: relative to the origin, sheared so that the ray is the third axis (not yet scaled).
-#[inline]
+#[inline(always)]
 fn shear(ray: &PreparedRay, vertex: Vec3) -> [f32; 3] {
-    let p = vertex - ray.origin;
-    let z = p[ray.axes[2]];
-    [p[ray.axes[0]] - ray.shear[0] * z, p[ray.axes[1]] - ray.shear[1] * z, z]
+    let vertex = vertex.to_array();
+    let [x, y, z] = [0, 1, 2].map(|i| vertex[ray.axes[i]] - ray.permuted_origin[i]);
+    [x - ray.shear[0] * z, y - ray.shear[1] * z, z]
 }
 
 /// The same test in double precision, where the products are exact and so the signs are.

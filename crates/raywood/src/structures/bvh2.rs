@@ -3,7 +3,8 @@
 use crate::build::{driver, sah_binned::BinnedSah};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3};
 
-/// A node of 32 bytes: half a cache line, so that two children, which lie side by side, are 64 bytes.
+/// A node of 32 bytes, `{ bounds.min, left_first, bounds.max, count }`: half a cache line, so that two children, which lie side by
+/// side, are 64 bytes.
 ///
 /// `count` tells what it is. An interior node has `count == 0` and its children are the nodes `left_first` and
 /// `left_first + 1`; a leaf holds the `count` primitives whose numbers stand in
@@ -14,14 +15,17 @@ use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Node {
-    /// The smallest coordinates of the box.
-    pub min: Vec3,
-    /// The left child's number, or the leaf's first place in the primitive indices.
-    pub left_first: u32,
-    /// The largest coordinates of the box.
-    pub max: Vec3,
-    /// The number of primitives of a leaf; 0 in an interior node.
-    pub count: u32,
+    /// The smallest coordinates with `left_first`, the largest with `count`: an array, so that a ray picks the corner it meets
+    /// first by its direction's sign without a branch.
+    corners: [Corner; 2],
+}
+
+/// A corner of a node's box and the number that shares its 16 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+struct Corner {
+    point: Vec3,
+    number: u32,
 }
 
 const _: () = assert!(size_of::<Node>() == 32);
@@ -30,25 +34,52 @@ impl Node {
     /// A leaf over `count` primitives from place `first` on.
     #[inline]
     pub(crate) fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
-        Self { min: bounds.min, left_first: first, max: bounds.max, count }
+        let corners = [
+            Corner { point: bounds.min, number: first },
+            Corner { point: bounds.max, number: count },
+        ];
+        Self { corners }
     }
 
     /// An interior node with children `left` and `left + 1`.
     #[inline]
     pub(crate) fn interior(bounds: Aabb, left: u32) -> Self {
-        Self { min: bounds.min, left_first: left, max: bounds.max, count: 0 }
+        Self::leaf(bounds, left, 0)
+    }
+
+    /// The same interior node with its children elsewhere.
+    pub(crate) fn with_children_at(self, left: u32) -> Self {
+        Self::interior(self.bounds(), left)
+    }
+
+    /// The left child's number, or the leaf's first place in the primitive indices.
+    #[inline]
+    pub fn left_first(&self) -> u32 {
+        self.corners[0].number
+    }
+
+    /// The number of primitives of a leaf; 0 in an interior node.
+    #[inline]
+    pub fn count(&self) -> u32 {
+        self.corners[1].number
     }
 
     /// Whether this is a leaf.
     #[inline]
     pub fn is_leaf(&self) -> bool {
-        self.count > 0
+        self.count() > 0
     }
 
     /// The node's box.
     #[inline]
     pub fn bounds(&self) -> Aabb {
-        Aabb { min: self.min, max: self.max }
+        Aabb { min: self.corners[0].point, max: self.corners[1].point }
+    }
+
+    /// The box's corner with the smallest (0) or largest (1) coordinates.
+    #[inline]
+    pub(crate) fn corner(&self, which: usize) -> &Vec3 {
+        &self.corners[which & 1].point
     }
 }
 
@@ -97,13 +128,13 @@ impl Bvh2 {
     /// The primitives' numbers of a leaf.
     #[inline]
     pub(crate) fn leaf_primitives(&self, leaf: &Node) -> &[u32] {
-        &self.primitive_indices[leaf.left_first as usize..][..leaf.count as usize]
+        &self.primitive_indices[leaf.left_first() as usize..][..leaf.count() as usize]
     }
 
     /// The two children of an interior node.
     #[inline]
     pub(crate) fn children(&self, interior: &Node) -> [&Node; 2] {
-        let pair = &self.nodes[interior.left_first as usize..][..2];
+        let pair = &self.nodes[interior.left_first() as usize..][..2];
         [&pair[0], &pair[1]]
     }
 }

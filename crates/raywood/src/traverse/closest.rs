@@ -26,7 +26,7 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
     let mut stack = Stack::<(u32, f32)>::new();
     loop {
         if node.is_leaf() {
-            probe.primitives(node.count as usize);
+            probe.primitives(node.count() as usize);
             for &primitive in tree.leaf_primitives(node) {
                 if let Some(hit) = geometry.intersect(primitive, &ray)
                     && let Some(hit) = inside_own_bounds(&ray, hit, &geometry.bounds(primitive))
@@ -46,7 +46,7 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
                     let left_first = near_left <= near_right;
                     let (near, far) =
                         if left_first { (left, near_right) } else { (right, near_left) };
-                    stack.push((node.left_first + u32::from(left_first), far));
+                    stack.push((node.left_first() + u32::from(left_first), far));
                     node = near;
                     continue;
                 }

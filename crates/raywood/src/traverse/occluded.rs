@@ -39,7 +39,7 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
             match (entry(&ray, ray.t_max, left), entry(&ray, ray.t_max, right)) {
                 (Some(near_left), Some(near_right)) => {
                     let left_first = near_left <= near_right;
-                    stack.push(node.left_first + u32::from(left_first));
+                    stack.push(node.left_first() + u32::from(left_first));
                     node = if left_first { left } else { right };
                     continue;
                 }

@@ -16,7 +16,7 @@ pub(super) fn lengthened(far: f32) -> f32 {
 /// The distance at which the ray enters the node's box, or `None` if it misses it or comes there only after `t_max`.
 #[inline]
 pub(super) fn entry(ray: &PreparedRay, t_max: f32, node: &Node) -> Option<f32> {
-    let (near, far) = overlap(ray, t_max, node.min, node.max);
+    let (near, far) = overlap(ray, t_max, |which| node.corner(which));
     (near <= lengthened(far)).then_some(near)
 }
 
@@ -32,26 +32,27 @@ pub(super) fn inside_own_bounds(
     hit: PrimitiveHit,
     bounds: &Aabb,
 ) -> Option<PrimitiveHit> {
-    let (near, far) = overlap(ray, ray.t_max, bounds.min, bounds.max);
+    let (near, far) =
+        overlap(ray, ray.t_max, |which| if which == 0 { &bounds.min } else { &bounds.max });
     let t = hit.t.min(far).max(near);
     (near <= lengthened(far) && ray.accepts(t)).then_some(PrimitiveHit { t, ..hit })
 }
 
-/// The part of the interval from `t_min` to `t_max` inside a box; empty (near beyond far) if there is none.
+/// The part of the interval from `t_min` to `t_max` inside a box, given by its corners of smallest (0) and largest (1)
+/// coordinates; empty (near beyond far) if there is none.
 #[inline]
-fn overlap(ray: &PreparedRay, t_max: f32, box_min: Vec3, box_max: Vec3) -> (f32, f32) {
+fn overlap<'a>(ray: &PreparedRay, t_max: f32, corner: impl Fn(usize) -> &'a Vec3) -> (f32, f32) {
     // A ray that runs along a slab's face gives NaN (zero times infinity); comparing so that NaN loses lets the other axes
     // decide, which keeps the face part of the box.
     let max = |x: f32, acc: f32| if x > acc { x } else { acc };
     let min = |x: f32, acc: f32| if x < acc { x } else { acc };
     let (mut near, mut far) = (ray.t_min, t_max);
     for axis in 0..3 {
-        let reciprocal = ray.reciprocal[axis];
-        let to_min = (box_min[axis] - ray.origin[axis]) * reciprocal;
-        let to_max = (box_max[axis] - ray.origin[axis]) * reciprocal;
-        let backwards = reciprocal < 0.0;
-        near = max(if backwards { to_max } else { to_min }, near);
-        far = min(if backwards { to_min } else { to_max }, far);
+        let entry_corner = ray.entry_corners[axis];
+        let to_plane =
+            |which: usize| (corner(which)[axis] - ray.origin[axis]) * ray.reciprocal[axis];
+        near = max(to_plane(entry_corner), near);
+        far = min(to_plane(1 - entry_corner), far);
     }
     (near, far)
 }
