@@ -12,65 +12,120 @@ const FILL: f64 = 0.94;
 
 /// A camera that shows the whole box from the front, the right and above, as large as it fits.
 ///
-/// The box is seen from `(0.6, 0.45, 1)` where y is up (see [`guess_up`]), from the same quarter where z is up. An
-/// empty box counts as the unit cube. `aspect` is the picture's width over its height.
-pub fn default_camera(bounds: &Aabb, aspect: f32) -> Camera {
-    let up = guess_up(bounds);
-    let from = if up == Vec3::Z { Vec3::new(0.6, -1.0, 0.55) } else { Vec3::new(0.6, 0.45, 1.0) };
-    frame_bounds(bounds, from, up, aspect)
+/// Where `up` is y the box is seen from `(0.6, 0.45, 1)`, where it is z from the same quarter. An empty box counts as
+/// the unit cube. `aspect` is the picture's width over its height.
+pub fn default_camera(bounds: &Aabb, up: Vec3, aspect: f32) -> Camera {
+    frame_bounds(bounds, default_direction(up), up, aspect)
 }
 
-/// The direction that is up in a model, as far as its bounding box tells.
-///
-/// Most formats and programs say y. A box that is much thinner along z than along both others is a terrain or a plate
-/// that lies flat in a world where z is up.
-pub fn guess_up(bounds: &Aabb) -> Vec3 {
-    let extent = bounds.extent();
-    let lies_flat = extent.z > 0.0 && extent.z < 0.35 * extent.x.min(extent.y);
-    if lies_flat { Vec3::Z } else { Vec3::Y }
+/// From where [`default_camera`] looks at a model: the front, the right and above.
+pub fn default_direction(up: Vec3) -> Vec3 {
+    if up == Vec3::Z { Vec3::new(0.6, -1.0, 0.45) } else { Vec3::new(0.6, 0.45, 1.0) }
 }
 
 /// A camera that looks at the box from the direction `from` (any length), with `up` upwards, as near as it can be while
 /// the whole box is in the picture.
 pub fn frame_bounds(bounds: &Aabb, from: Vec3, up: Vec3, aspect: f32) -> Camera {
-    let (center, half) = center_and_half_extent(bounds);
-
-    // The picture's axes; double precision, since boxes may be tiny and far from the origin.
-    let back = from.normalize_or_zero();
-    let back = if back == Vec3::ZERO { Vec3::Z } else { back };
-    let right = up.cross(back).normalize_or_zero();
-    let right = if right == Vec3::ZERO { back.orthonormal_basis().0 } else { right };
-    let [right, true_up, back] = [right, back.cross(right), back].map(double);
-
-    // How far the box reaches beyond each of the four planes through the eye at the picture's edges, if the eye were at
-    // the centre. The eye must step back and aside until none of them cuts the box.
-    let slope_y = (0.5 * f64::from(FOV_Y).to_radians()).tan() * FILL;
-    let aspect = if aspect.is_finite() && aspect > 0.0 { f64::from(aspect) } else { 1.0 };
-    let slope_x = slope_y * aspect;
-    let (mut reach_x, mut reach_y) = ([f64::NEG_INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut framing = Framing::new(bounds, from, up, aspect);
+    let (center, half) = (framing.center, framing.half);
     for corner in 0..8 {
-        let offset = [0, 1, 2].map(|i| if corner >> i & 1 == 0 { -half[i] } else { half[i] });
-        let (x, y, z) = (dot(offset, right), dot(offset, true_up), dot(offset, back));
-        reach_x = [reach_x[0].max(-x + slope_x * z), reach_x[1].max(x + slope_x * z)];
-        reach_y = [reach_y[0].max(-y + slope_y * z), reach_y[1].max(y + slope_y * z)];
+        framing.reach_to(
+            [0, 1, 2].map(|i| center[i] + if corner >> i & 1 == 0 { -half[i] } else { half[i] }),
+        );
     }
-    let eye_x = 0.5 * (reach_x[1] - reach_x[0]);
-    let eye_y = 0.5 * (reach_y[1] - reach_y[0]);
-    let distance =
-        (0.5 * (reach_x[0] + reach_x[1]) / slope_x).max(0.5 * (reach_y[0] + reach_y[1]) / slope_y);
+    framing.camera()
+}
 
-    let target = [0, 1, 2].map(|i| center[i] + eye_x * right[i] + eye_y * true_up[i]);
-    let eye = [0, 1, 2].map(|i| target[i] + distance * back[i]);
-    Camera {
-        name: String::new(),
-        eye: single(eye),
-        target: single(target),
-        up: up.normalize_or_zero(),
-        fov_y: FOV_Y,
+/// A search for the nearest place from which a set of points can be seen whole, in a given direction.
+///
+/// Include every point, in any order and in as many parts as convenient; then ask for the camera.
+#[derive(Clone, Debug)]
+pub struct Framing {
+    center: [f64; 3],
+    half: [f64; 3],
+    /// The picture's axes: right, up, and back towards the eye.
+    axes: [[f64; 3]; 3],
+    /// The slope of the picture's edges, width and height.
+    slopes: [f64; 2],
+    /// How far the points reach beyond each of the four planes at the picture's edges (left, right; bottom, top) if the
+    /// eye were at the centre.
+    reach: [[f64; 2]; 2],
+    up: Vec3,
+}
+
+impl Framing {
+    /// For points in a box, seen from the direction `from`, with `up` upwards.
+    pub fn new(bounds: &Aabb, from: Vec3, up: Vec3, aspect: f32) -> Self {
+        let (center, half) = center_and_half_extent(bounds);
+        let back = from.normalize_or_zero();
+        let back = if back == Vec3::ZERO { Vec3::Z } else { back };
+        let right = up.cross(back).normalize_or_zero();
+        let right = if right == Vec3::ZERO { back.orthonormal_basis().0 } else { right };
+
+        let slope_y = (0.5 * f64::from(FOV_Y).to_radians()).tan() * FILL;
+        let aspect = if aspect.is_finite() && aspect > 0.0 { f64::from(aspect) } else { 1.0 };
+        Self {
+            center,
+            half,
+            // Double precision, since boxes may be tiny and far from the origin.
+            axes: [right, back.cross(right), back].map(double),
+            slopes: [slope_y * aspect, slope_y],
+            reach: [[f64::NEG_INFINITY; 2]; 2],
+            up: up.normalize_or_zero(),
+        }
+    }
+
+    /// Demands that a point be in the picture.
+    pub fn include(&mut self, point: Vec3) {
+        self.reach_to(double(point));
+    }
+
+    /// Demands everything that another search, otherwise the same, demands.
+    pub fn merge(mut self, other: &Self) -> Self {
+        for axis in 0..2 {
+            for side in 0..2 {
+                self.reach[axis][side] = self.reach[axis][side].max(other.reach[axis][side]);
+            }
+        }
+        self
+    }
+
+    fn reach_to(&mut self, point: [f64; 3]) {
+        let offset = [0, 1, 2].map(|i| point[i] - self.center[i]);
+        let depth = dot(offset, self.axes[2]);
+        for axis in 0..2 {
+            let (across, forward) = (dot(offset, self.axes[axis]), self.slopes[axis] * depth);
+            let [low, high] = &mut self.reach[axis];
+            *low = low.max(forward - across);
+            *high = high.max(forward + across);
+        }
+    }
+
+    /// The camera. Without any points it looks at the middle of the box.
+    pub fn camera(&self) -> Camera {
+        // Aside, so that the points are in the middle; and back, until none is beyond a plane. At least so far that eye
+        // and target differ.
+        let middle = |[low, high]: [f64; 2]| if low.is_finite() { 0.5 * (high - low) } else { 0.0 };
+        let aside = self.reach.map(middle);
+        let least = self.half.into_iter().fold(0.0, f64::max);
+        let distance = (0..2)
+            .map(|axis| 0.5 * (self.reach[axis][0] + self.reach[axis][1]) / self.slopes[axis])
+            .fold(least, f64::max);
+
+        let [right, up, back] = self.axes;
+        let target = [0, 1, 2].map(|i| self.center[i] + aside[0] * right[i] + aside[1] * up[i]);
+        let eye = [0, 1, 2].map(|i| target[i] + distance * back[i]);
+        Camera {
+            name: String::new(),
+            eye: single(eye),
+            target: single(target),
+            up: self.up,
+            fov_y: FOV_Y,
+        }
     }
 }
 
-/// The box's centre, and half its extent widened so far that the camera's coordinates can tell eye from target.
+/// The box's centre, and half its extent, widened so far that the camera's coordinates can tell eye from target.
 fn center_and_half_extent(bounds: &Aabb) -> ([f64; 3], [f64; 3]) {
     if bounds.is_empty() || !bounds.is_finite() {
         return ([0.0; 3], [0.5; 3]);
@@ -102,9 +157,9 @@ pub fn default_lights(camera: &Camera) -> Vec<Light> {
         intensity: Rgb::splat(strength),
     };
     vec![
-        directional("key", -0.7 * right + 1.1 * up + 0.8 * level_back, 0.85),
-        directional("fill", 0.9 * right + 0.35 * up + 0.5 * level_back, 0.22),
-        ambient(0.22),
+        directional("key", -0.7 * right + 1.1 * up + 0.8 * level_back, 0.9),
+        directional("fill", 0.9 * right + 0.35 * up + 0.5 * level_back, 0.18),
+        ambient(0.17),
     ]
 }
 
@@ -162,7 +217,7 @@ mod tests {
         ];
         for bounds in boxes {
             for aspect in [0.5, 1.0, 1.6, 3.0] {
-                let camera = default_camera(&bounds, aspect);
+                let camera = default_camera(&bounds, Vec3::Y, aspect);
                 let corners = project(&camera, &bounds, f64::from(aspect));
                 let reach = corners.iter().flatten().fold(0.0, |r: f64, x| r.max(x.abs()));
                 assert!(reach <= 0.96, "{bounds:?} at {aspect} reaches to {reach}");
@@ -179,22 +234,38 @@ mod tests {
             Aabb::new([1e6; 3], [1e6; 3]),
             Aabb::new([f32::MIN; 3], [f32::MAX; 3]),
         ] {
-            let camera = default_camera(&bounds, 1.6);
+            let camera = default_camera(&bounds, Vec3::Y, 1.6);
             assert!(camera.eye.is_finite() && camera.target.is_finite() && camera.up.is_finite());
             assert_ne!(camera.eye, camera.target);
         }
     }
 
     #[test]
-    fn a_flat_terrain_is_seen_from_above_with_z_up() {
-        let camera = default_camera(&Aabb::new([0.0; 3], [100.0, 80.0, 10.0]), 1.6);
+    fn z_up_is_seen_from_above_too() {
+        let camera = default_camera(&Aabb::new([0.0; 3], [100.0, 80.0, 10.0]), Vec3::Z, 1.6);
         assert_eq!(camera.up, Vec3::Z);
-        assert!(camera.eye.z > camera.target.z);
+        assert!(camera.eye.z > camera.target.z && camera.eye.y < camera.target.y);
+    }
+
+    #[test]
+    fn points_can_be_included_in_parts() {
+        let bounds = Aabb::new([-1.0; 3], [1.0; 3]);
+        let points =
+            [Vec3::new(-1.0, 0.0, 0.5), Vec3::new(1.0, -1.0, 1.0), Vec3::new(0.0, 1.0, -1.0)];
+        let empty = Framing::new(&bounds, default_direction(Vec3::Y), Vec3::Y, 1.5);
+        let [mut whole, mut part, mut rest] = [empty.clone(), empty.clone(), empty];
+        points.iter().for_each(|&p| whole.include(p));
+        part.include(points[0]);
+        points[1..].iter().for_each(|&p| rest.include(p));
+        assert_eq!(part.merge(&rest).camera(), whole.camera());
+        // Fewer points can be seen from nearer.
+        let distance = |camera: Camera| (camera.eye - camera.target).length();
+        assert!(distance(whole.camera()) < distance(default_camera(&bounds, Vec3::Y, 1.5)));
     }
 
     #[test]
     fn the_key_light_comes_from_above_and_from_the_viewers_side() {
-        let camera = default_camera(&Aabb::new([-1.0; 3], [1.0; 3]), 1.6);
+        let camera = default_camera(&Aabb::new([-1.0; 3], [1.0; 3]), Vec3::Y, 1.6);
         let lights = default_lights(&camera);
         let LightKind::Directional { direction } = lights[0].kind else {
             panic!("not directional")

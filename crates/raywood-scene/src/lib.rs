@@ -14,7 +14,9 @@ mod scene;
 pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
-pub use framing::{ambient, default_camera, default_lights, frame_bounds, guess_up};
+pub use framing::{
+    Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,
+};
 pub use light::{Light, LightKind};
 pub use material::{Material, MaterialId};
 pub use mesh::Mesh;

@@ -1,0 +1,133 @@
+//! A camera and lights within a closed room.
+
+use raywood::{Aabb, Ray, Vec3};
+use raywood_scene::{Camera, Light, LightKind, Rgb, ambient};
+
+use super::place::standpoints;
+use super::probes::Surroundings;
+use crate::PreparedScene;
+use crate::camera_rays::CameraRays;
+
+/// The vertical field of view within rooms, in degrees: wide, since one cannot step back.
+const FOV_Y: f32 = 55.0;
+
+/// The best of some views: from each standpoint, stepped back towards the wall, in eight directions.
+pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -> Camera {
+    let mut best: Option<(f32, Camera)> = None;
+    for point in standpoints(bounds) {
+        if Surroundings::of(prepared, point).fronts < 0.6 {
+            continue;
+        }
+        for eighth in 0..8 {
+            let (sin, cos) = (eighth as f32 * std::f32::consts::FRAC_PI_4).sin_cos();
+            let camera = stepped_back(prepared, bounds, point, Vec3::new(cos, 0.0, sin));
+            let score = score(prepared, bounds, &camera, aspect);
+            if best.as_ref().is_none_or(|(best, _)| score > *best) {
+                best = Some((score, camera));
+            }
+        }
+    }
+    match best {
+        Some((_, camera)) => camera,
+        None => stepped_back(prepared, bounds, bounds.center(), Vec3::X),
+    }
+}
+
+/// A camera that looks along the level direction `towards` and a little down, from as far back as the room reaches.
+fn stepped_back(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3, towards: Vec3) -> Camera {
+    let diagonal = bounds.diagonal();
+    let behind = prepared.bvh().intersect(&Ray::new(point, -towards));
+    let room = behind.map_or(0.25 * diagonal, |hit| hit.t);
+    let eye = point - 0.85 * room * towards;
+    let target = eye + 0.3 * diagonal * (towards - 0.12 * Vec3::Y);
+    Camera { name: String::new(), eye, target, up: Vec3::Y, fov_y: FOV_Y }
+}
+
+/// How much a view shows: depth, and many different surfaces; nothing right before the eye.
+fn score(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera, aspect: f32) -> f32 {
+    const ROWS: u32 = 18;
+    let columns = ((ROWS as f32 * aspect) as u32).clamp(1, 4 * ROWS);
+    let Ok(rays) = CameraRays::new(camera, columns, ROWS) else { return f32::NEG_INFINITY };
+    let longest = bounds.extent().max_element();
+    let near = 0.04 * bounds.diagonal();
+
+    let (mut depth, mut too_near, mut seen) = (0.0, 0, Vec::new());
+    for row in 0..ROWS {
+        for column in 0..columns {
+            let ray = rays.ray(column as f32 + 0.5, row as f32 + 0.5);
+            // The open sky counts as a distant wall would, no more.
+            let Some(hit) = prepared.bvh().intersect(&ray) else {
+                depth += 0.3;
+                continue;
+            };
+            depth += (hit.t / longest).min(1.0);
+            too_near += u32::from(hit.t < near);
+            seen.push(hit.primitive);
+        }
+    }
+    seen.sort_unstable();
+    seen.dedup();
+    (depth + 0.3 * seen.len() as f32 - 1.5 * too_near as f32) / (columns * ROWS) as f32
+}
+
+/// Lights for a room: some below its ceiling, along its length; a weak one beside the camera; and ambient light.
+///
+/// Their strengths follow from how far away their surroundings are, so rooms of any size look alike.
+pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -> Vec<Light> {
+    let extent = bounds.extent();
+    let (length, width, along) = if extent.x >= extent.z {
+        (extent.x, extent.z, Vec3::X)
+    } else {
+        (extent.z, extent.x, Vec3::Z)
+    };
+    let places: &[f32] = if length > 1.5 * width { &[-0.3, 0.0, 0.3] } else { &[0.0] };
+
+    let mut lights: Vec<Light> = places
+        .iter()
+        .filter_map(|&place| {
+            let below = bounds.center() + place * length * along;
+            below_ceiling(prepared, bounds, below)
+        })
+        .map(|(position, distance)| {
+            let strength = 0.8 * distance * distance / (places.len() as f32).sqrt();
+            point_light("ceiling", position, strength)
+        })
+        .collect();
+
+    // Beside the camera, so that its shadows show a little.
+    let forward = (camera.target - camera.eye).normalize_or_zero();
+    let right = forward.cross(camera.up).normalize_or_zero();
+    let around = Surroundings::of(prepared, camera.eye);
+    let view = if around.enclosed > 0.5 {
+        around.distance
+    } else {
+        (bounds.center() - camera.eye).length()
+    };
+    let beside = camera.eye + 0.03 * view * (right + camera.up.normalize_or_zero());
+    let fill = if lights.is_empty() { 0.8 } else { 0.25 };
+    lights.push(point_light("fill", beside, fill * view * view));
+    lights.push(ambient(0.25));
+    lights
+}
+
+/// A good place for a lamp straight above a point: the most open one of some heights, with the mean distance of what
+/// it lights. `None` if all of them lie within something.
+fn below_ceiling(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3) -> Option<(Vec3, f32)> {
+    let ceiling = prepared.bvh().intersect(&Ray::new(point, Vec3::Y));
+    let height = ceiling.map_or(bounds.max.y - point.y, |hit| hit.t);
+    [0.7, 0.5, 0.3]
+        .into_iter()
+        .map(|share| point + share * height * Vec3::Y)
+        .map(|position| (position, Surroundings::of(prepared, position)))
+        .filter(|(_, around)| around.fronts >= 0.6)
+        .map(|(position, around)| (position, around.distance))
+        .reduce(|best, next| if next.1 > 1.2 * best.1 { next } else { best })
+}
+
+fn point_light(name: &str, position: Vec3, strength: f32) -> Light {
+    Light {
+        name: name.into(),
+        kind: LightKind::Point { position },
+        intensity: Rgb::splat(strength),
+    }
+}

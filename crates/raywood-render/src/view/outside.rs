@@ -1,0 +1,140 @@
+//! A camera for what is seen from outside.
+
+use rayon::prelude::*;
+use raywood::{Aabb, Geometry, Vec3};
+use raywood_scene::{Camera, Framing, default_direction, frame_bounds};
+
+use crate::PreparedScene;
+use crate::camera_rays::CameraRays;
+
+/// The best of some three-quarter views of where the detail is.
+pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -> Camera {
+    let up = up(prepared, bounds);
+    let Some(detail) = detail_bounds(prepared, bounds) else {
+        return frame_surfaces(prepared, bounds, up, aspect);
+    };
+
+    // What stands around the detail may hide it: look from where most of it can be seen, from the usual side if it is
+    // nearly as good.
+    let usual = default_direction(up);
+    let level = usual - usual.dot(up) * up;
+    let side = level.dot(Vec3::X) * Vec3::X;
+    let from_left = usual - 2.0 * side;
+    let from_front = usual - side;
+    let from_behind = 2.0 * usual.dot(up) * up - usual;
+    [usual, from_left, from_front, level, level - side, from_behind]
+        .into_iter()
+        .map(|from| frame_bounds(&detail, from, up, aspect))
+        .map(|camera| (visible_share(prepared, &detail, &camera), camera))
+        .reduce(|best, next| if next.0 > best.0 + 0.15 { next } else { best })
+        .map_or_else(|| frame_bounds(bounds, usual, up, aspect), |(_, camera)| camera)
+}
+
+/// The default camera, moved so near that the surfaces themselves (not only their box) fill the picture.
+fn frame_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, up: Vec3, aspect: f32) -> Camera {
+    let empty = || Framing::new(bounds, default_direction(up), up, aspect);
+    let mesh = &prepared.scene().mesh.triangles;
+    let triangles = mesh
+        .triangles()
+        .par_iter()
+        .fold(empty, |mut framing, triangle| {
+            for &vertex in triangle {
+                framing.include(mesh.positions()[vertex as usize]);
+            }
+            framing
+        })
+        .reduce(empty, |a, b| a.merge(&b));
+
+    let mut framing = triangles;
+    let spheres = &prepared.scene().spheres;
+    for sphere in 0..spheres.len() as u32 {
+        let Aabb { min, max } = spheres.bounds(sphere);
+        for corner in 0..8 {
+            let pick =
+                |bit: u32, min: f32, max: f32| if corner >> bit & 1 == 0 { min } else { max };
+            framing.include(Vec3::new(
+                pick(0, min.x, max.x),
+                pick(1, min.y, max.y),
+                pick(2, min.z, max.z),
+            ));
+        }
+    }
+    framing.camera()
+}
+
+/// Which direction is up: y, as most formats and programs say, or z for a terrain in a world where z is up: flat, not
+/// quite level, and nowhere overhanging.
+fn up(prepared: &PreparedScene<'_>, bounds: &Aabb) -> Vec3 {
+    let extent = bounds.extent();
+    let width = extent.x.min(extent.y);
+    if !(extent.z > 0.002 * width && extent.z < 0.35 * width) {
+        return Vec3::Y;
+    }
+    let mesh = &prepared.scene().mesh.triangles;
+    let count = mesh.triangles().len();
+    let facing_up = (0..count as u32)
+        .filter(|&triangle| {
+            let [a, b, c] = mesh.corners(triangle);
+            (b - a).cross(c - a).z > 0.0
+        })
+        .count();
+    if count > 0 && facing_up as f32 > 0.98 * count as f32 { Vec3::Z } else { Vec3::Y }
+}
+
+/// The box around where nearly all primitives are, if it is much smaller than the whole: what stands on a wide floor, or
+/// before a backdrop.
+fn detail_bounds(prepared: &PreparedScene<'_>, bounds: &Aabb) -> Option<Aabb> {
+    const MOST_SAMPLES: usize = 1 << 14;
+    const FEWEST: usize = 500;
+    let surfaces = prepared.bvh().geometry();
+    if surfaces.len() < FEWEST {
+        return None;
+    }
+    let step = surfaces.len().div_ceil(MOST_SAMPLES);
+    let centers: Vec<Vec3> = (0..surfaces.len())
+        .step_by(step)
+        .map(|primitive| surfaces.bounds(primitive as u32).center())
+        .collect();
+
+    // All but a hundredth at either end of each axis, and some margin.
+    let range = |axis: usize| {
+        let mut values: Vec<f32> = centers.iter().map(|center| center[axis]).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let skip = values.len() / 100;
+        (values[skip], values[values.len() - 1 - skip])
+    };
+    let [x, y, z] = [range(0), range(1), range(2)];
+    let core = Aabb::new([x.0, y.0, z.0], [x.1, y.1, z.1]);
+    let margin = Vec3::splat(0.15 * core.diagonal());
+    let detail =
+        Aabb::new((core.min - margin).max(bounds.min), (core.max + margin).min(bounds.max));
+    (core.diagonal() > 0.0 && detail.diagonal() < 0.5 * bounds.diagonal()).then_some(detail)
+}
+
+/// The share of a camera's rays, of those that meet the box, that nothing stops before it.
+fn visible_share(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -> f32 {
+    const SIZE: u32 = 24;
+    let Ok(rays) = CameraRays::new(camera, SIZE, SIZE) else { return 0.0 };
+    let (mut meet, mut visible) = (0, 0);
+    for row in 0..SIZE {
+        for column in 0..SIZE {
+            let ray = rays.ray(column as f32 + 0.5, row as f32 + 0.5);
+            let Some(entry) = entry(bounds, ray.origin, ray.direction) else { continue };
+            meet += 1;
+            visible += u32::from(!prepared.bvh().occluded(&ray.with_interval(0.0, entry)));
+        }
+    }
+    visible as f32 / meet.max(1) as f32
+}
+
+/// Where a ray from outside enters a box.
+fn entry(bounds: &Aabb, origin: Vec3, direction: Vec3) -> Option<f32> {
+    let (mut near, mut far) = (0.0f32, f32::INFINITY);
+    for axis in 0..3 {
+        let a = (bounds.min[axis] - origin[axis]) / direction[axis];
+        let b = (bounds.max[axis] - origin[axis]) / direction[axis];
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
+    }
+    (near < far && near > 0.0).then_some(near)
+}
