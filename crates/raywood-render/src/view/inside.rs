@@ -70,7 +70,8 @@ fn score(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera, aspect: f
     (depth + 0.3 * seen.len() as f32 - 1.5 * too_near as f32) / (columns * ROWS) as f32
 }
 
-/// Lights for a room: some below its ceiling, along its length; a weak one beside the camera; and ambient light.
+/// Lights for a room: some below its ceiling, along its length; a weak one beside the camera; ambient light; and the sun
+/// where the roof is open.
 ///
 /// Their strengths follow from how far away their surroundings are, so rooms of any size look alike.
 pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -> Vec<Light> {
@@ -80,7 +81,7 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
     } else {
         (extent.z, extent.x, Vec3::Z)
     };
-    let places: &[f32] = if length > 1.5 * width { &[-0.3, 0.0, 0.3] } else { &[0.0] };
+    let places: &[f32] = if length > 1.5 * width { &[-0.22, 0.0, 0.22] } else { &[0.0] };
 
     let mut lights: Vec<Light> = places
         .iter()
@@ -88,10 +89,7 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
             let below = bounds.center() + place * length * along;
             below_ceiling(prepared, bounds, below)
         })
-        .map(|(position, distance)| {
-            let strength = 0.8 * distance * distance / (places.len() as f32).sqrt();
-            point_light("ceiling", position, strength)
-        })
+        .map(|(position, distance)| point_light("ceiling", position, 0.55 * distance * distance))
         .collect();
 
     // Beside the camera, so that its shadows show a little.
@@ -106,7 +104,18 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
     let beside = camera.eye + 0.03 * view * (right + camera.up.normalize_or_zero());
     let fill = if lights.is_empty() { 0.8 } else { 0.25 };
     lights.push(point_light("fill", beside, fill * view * view));
-    lights.push(ambient(0.25));
+    lights.push(ambient(0.3));
+
+    // Where the roof is open the sun shines in, steeply and a little aslant.
+    if !prepared.bvh().occluded(&Ray::new(bounds.center(), Vec3::Y)) {
+        lights.push(Light {
+            name: "sun".into(),
+            kind: LightKind::Directional {
+                direction: Vec3::new(-0.25, -1.0, -0.35).normalize_or_zero(),
+            },
+            intensity: Rgb::splat(0.9),
+        });
+    }
     lights
 }
 
