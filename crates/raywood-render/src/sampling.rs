@@ -10,6 +10,9 @@
 pub struct PixelSamples {
     samples: u32,
     seeds: [u32; 2],
+    /// The bits of a coordinate that the number of samples can fill, as a mask, and half of the last of them.
+    filled: u32,
+    half: u32,
 }
 
 impl PixelSamples {
@@ -17,17 +20,23 @@ impl PixelSamples {
     #[inline]
     pub fn new(x: u32, y: u32, samples: u32) -> Self {
         let pixel = mix(x ^ mix(y ^ 0x5bd1_e995));
-        Self { samples, seeds: [mix(pixel ^ 0x68bc_21eb), mix(pixel ^ 0x02e5_be93)] }
+        let seeds = [mix(pixel ^ 0x68bc_21eb), mix(pixel ^ 0x02e5_be93)];
+        let half = (1 << 31) >> samples.next_power_of_two().trailing_zeros();
+        Self { samples, seeds, filled: !(2 * half - 1), half }
     }
 
     /// Point `index` in the unit square, both coordinates at least 0 and below 1.
+    ///
+    /// Each coordinate lies in the middle of its stratum: where upright and level edges cross a pixel, every pixel
+    /// along the edge then counts the same number of points on either side, and the edge is not ragged.
     #[inline]
     pub fn unit_square(&self, index: u32) -> [f32; 2] {
         let points = [index, sobol_second(index).reverse_bits()];
         [0, 1].map(|dimension| {
-            // The scrambled bits, most significant first, as a fraction; 24 of them fit a float exactly.
             let bits = owen_scramble_reversed(points[dimension], self.seeds[dimension]);
-            (bits.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
+            let middle = (bits.reverse_bits() & self.filled) | self.half;
+            // The bits, most significant first, as a fraction; 24 of them fit a float exactly.
+            (middle >> 8) as f32 * (1.0 / 16_777_216.0)
         })
     }
 
@@ -110,6 +119,24 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn coordinates_are_the_middles_of_their_strata_in_every_pixel() {
+        for pixel in 0..50 {
+            for axis in [0, 1] {
+                let samples = PixelSamples::new(pixel, 7 * pixel, 8);
+                let mut eighths: Vec<f32> =
+                    (0..8).map(|index| 8.0 * samples.unit_square(index)[axis]).collect();
+                eighths.sort_unstable_by(f32::total_cmp);
+                assert_eq!(eighths, [0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5]);
+            }
+        }
+        // The most samples that anyone may ask for, and an odd number.
+        for samples in [3, 1 << 20] {
+            let [u, v] = PixelSamples::new(1, 2, samples).unit_square(samples - 1);
+            assert!((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v));
         }
     }
 
