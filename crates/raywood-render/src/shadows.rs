@@ -78,7 +78,11 @@ fn filter(material: &SurfaceMaterial, cosine: f32, length: f32) -> Rgb {
 /// What is left of light after some way through what absorbs it (Beer and Lambert).
 #[inline]
 pub(crate) fn transmittance(absorption: Rgb, length: f32) -> Rgb {
-    Rgb::from(absorption.to_array().map(|a| if a > 0.0 { (-a * length).exp() } else { 1.0 }))
+    if absorption == Rgb::ZERO {
+        return Rgb::ONE;
+    }
+    let left = |a: f32| if a > 0.0 { (-a * length).exp() } else { 1.0 };
+    Rgb::new(left(absorption.x), left(absorption.y), left(absorption.z))
 }
 
 /// Whether a ray may meet a box; false only if it cannot (Kay and Kajiya 1986, with a margin for rounding).
