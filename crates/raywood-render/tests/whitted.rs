@@ -265,23 +265,59 @@ fn a_closed_white_box_stays_bounded() {
     assert!(image.pixel(0, 0).max_element() > 0.1);
 }
 
+/// A floor at a height where interpolation rounds to either side of a layer of cubes.
 #[test]
 fn a_checked_floor_between_two_layers_of_cubes_does_not_flicker() {
     let checks =
-        Material { pattern: Pattern::Checker { other: Rgb::ZERO, size: 1.0 }, ..matte(1.0) };
-    let mut scene = scene(&[(level(0.0, 50.0, true), 0)], &[], vec![checks]);
+        Material { pattern: Pattern::Checker { other: Rgb::ZERO, size: 0.1 }, ..matte(1.0) };
+    let mut scene = scene(&[(level(0.3, 5.0, true), 0)], &[], vec![checks]);
     scene.lights = vec![light(LightKind::Ambient, 1.0)];
-    let seen = |x: f32, z: f32| {
-        let eye = camera([x + 0.1, 3.0, z + 5.0], [x, 0.0, z]);
+    let seen = |column: f32, row: f32| {
+        let (x, z) = (0.1 * column, 0.1 * row);
+        let eye = camera([x + 0.1, 3.0, z + 5.0], [x, 0.3, z]);
         look(&scene, &eye, &one_pixel()).0.x
     };
-    for (column, row) in [(0, 0), (1, 0), (0, 1), (5, 8), (-3, 2), (-4, -4)] {
-        let first = seen(column as f32 + 0.5, row as f32 + 0.5);
-        for (dx, dz) in [(0.1, 0.1), (0.9, 0.2), (0.3, 0.8)] {
-            assert_eq!(seen(column as f32 + dx, row as f32 + dz), first);
+    let base = seen(0.5, 0.5);
+    for column in -6..6 {
+        for row in -6..6 {
+            let expected = if (column + row) % 2 == 0 { base } else { 1.0 - base };
+            for (dx, dz) in [(0.1, 0.2), (0.9, 0.3), (0.4, 0.8)] {
+                assert_eq!(seen(column as f32 + dx, row as f32 + dz), expected);
+            }
         }
-        assert_ne!(seen(column as f32 + 1.5, row as f32 + 0.5), first);
     }
+}
+
+#[test]
+fn a_spot_shines_into_its_cone_and_fades_towards_its_edge() {
+    let mut scene = scene(&[(level(0.0, 9.0, true), 0)], &[], vec![matte(1.0)]);
+    let spot = LightKind::Spot {
+        position: Vec3::new(0.0, 1.0, 0.0),
+        direction: Vec3::new(0.0, -1.0, 0.0),
+        cos_inner: 0.9,
+        cos_outer: 0.7,
+    };
+    scene.lights = vec![light(spot, 1.0)];
+    // The cosine at the light is that at the floor, and the distance its reciprocal: cosine^3 times the fall-off.
+    for (cosine, falloff) in [(0.95f32, 1.0), (0.8, 0.25), (0.75, 0.0625), (0.69, 0.0)] {
+        let x = (1.0 - cosine * cosine).sqrt() / cosine;
+        let (color, _) = look(&scene, &camera([x, 3.0, 0.1], [x, 0.0, 0.0]), &one_pixel());
+        assert_near(color, Rgb::splat(cosine.powi(3) * falloff), 1e-4);
+    }
+}
+
+/// Where a bent normal would mirror the view down through the surface, it is mirrored along it instead.
+#[test]
+fn bent_normals_never_send_reflections_below_the_surface() {
+    let silver = Material { mirror: Rgb::ONE, ..matte(0.0) };
+    let mut scene = scene(&[(level(0.0, 5.0, true), 0)], &[], vec![silver]);
+    scene.background = Background { zenith: Rgb::ONE, horizon: Rgb::ONE, nadir: Rgb::ZERO };
+    scene.mesh.normals = vec![Vec3::new(-0.6, 0.8, 0.0); 4];
+    let (color, _) = look(&scene, &camera([-4.0, 0.4, 0.0], [0.0; 3]), &one_pixel());
+    assert_near(color, Rgb::ONE, 1e-6);
+    scene.mesh.normals = vec![Vec3::new(0.6, 0.8, 0.0); 4];
+    let (color, _) = look(&scene, &camera([-4.0, 0.4, 0.0], [0.0; 3]), &one_pixel());
+    assert_near(color, Rgb::ONE, 1e-6);
 }
 
 #[test]
