@@ -3,8 +3,11 @@
 pub mod builtin;
 mod camera;
 mod color;
+mod error;
+pub mod formats;
 mod framing;
 mod light;
+mod load;
 mod material;
 mod mesh;
 mod noise;
@@ -14,10 +17,12 @@ mod scene;
 pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
+pub use error::{LoadError, Place};
 pub use framing::{
     Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,
 };
 pub use light::{Light, LightKind};
+pub use load::{LoadOptions, load_file};
 pub use material::{Material, MaterialId};
 pub use mesh::Mesh;
 pub use pattern::Pattern;

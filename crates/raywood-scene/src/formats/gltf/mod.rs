@@ -1,0 +1,102 @@
+//! glTF 2.0 (Khronos 2017), as JSON with buffers beside it (`.gltf`) or all in one (`.glb`).
+//!
+//! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it. Read:
+//! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `COLOR_0`; sparse and normalised accessors; metallic
+//! and rough materials as far as Whitted's method can show them; perspective cameras; punctual lights. Left out with a
+//! warning: textures, points and lines, skins (shown as stored), morph targets and animations.
+//!
+//! The crate `gltf-json` reads the JSON and checks what it can. What it does not check (that buffers are as long as promised, that
+//! views and accessors lie within them, that nodes form trees) is checked here, before anything is read or allocated.
+
+use raywood::Aabb;
+
+use self::document::Document;
+use super::notes::Notes;
+use super::raw_mesh::RawMesh;
+use super::{Format, Input};
+use crate::error::{LoadError, Place};
+use crate::{Material, Scene};
+
+mod accessor;
+mod camera;
+mod check;
+mod container;
+mod document;
+mod light;
+mod material;
+mod node;
+mod primitive;
+mod transform;
+
+pub(super) const FORMAT: Format = Format {
+    name: "glTF",
+    extensions: &["glb", "gltf"],
+    description: "a glTF 2.0 file",
+    recognises: |bytes| {
+        let start = &bytes[..bytes.len().min(4096)];
+        let is_json = start.trim_ascii_start().starts_with(b"{");
+        start.starts_with(b"glTF") || is_json && memchr::memmem::find(bytes, b"\"asset\"").is_some()
+    },
+    load,
+};
+
+/// The most triangles, and the most vertices, that copies of meshes may add up to: a small file can ask for any number of copies.
+const MOST: u64 = 1 << 27;
+
+fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
+    let mut notes = Notes::new(input.path, input.options.strict);
+    let document = Document::open(input, &mut notes)?;
+    let root = &document.root;
+    let instances = node::instances(&document)?;
+
+    // Materials, and a last one for what has none.
+    let mut textures = material::Textures::default();
+    let mut materials: Vec<Material> =
+        root.materials.iter().map(|m| material::convert(m, &mut textures)).collect();
+    textures.say(&mut notes);
+    materials.push(Material::default());
+
+    // Triangles in world space. All sizes are known beforehand.
+    let mut mesh = RawMesh::default();
+    let mut size = primitive::Size::default();
+    for instance in &instances {
+        if let Some(mesh) = instance.node.mesh {
+            size = size + primitive::size(&document, mesh.value())?;
+        }
+    }
+    if size.vertices.max(size.triangles) > MOST {
+        let (triangles, vertices) = (size.triangles, size.vertices);
+        let message = format!(
+            "its nodes show {triangles} triangles and {vertices} vertices in all, expected at most {MOST} of each"
+        );
+        return Err(LoadError::new(input.path, Place::File, message));
+    }
+    mesh.positions.reserve_exact(size.vertices as usize);
+    mesh.triangles.reserve_exact(size.triangles as usize);
+    mesh.materials.reserve_exact(size.triangles as usize);
+    for instance in &instances {
+        primitive::add(&document, instance, &mut mesh, &mut notes)?;
+    }
+    let mesh = mesh.finish(input)?;
+
+    // Cameras and lights, which take some measure from the size of it all.
+    let bounds = mesh.triangles.total_bounds();
+    let cameras = camera::cameras(&document, &instances, bounds, &mut notes)?;
+    let lights = light::lights(&document, &instances, bounds, &mut notes);
+    if !root.animations.is_empty() {
+        notes.say("animations are not played: shown as stored");
+    }
+    let warnings = notes.into_warnings();
+    Ok(Scene { mesh, materials, lights, cameras, warnings, ..Scene::default() })
+}
+
+/// The middle and half the diagonal of a box; some place and size if it is empty.
+fn center_and_radius(bounds: Aabb) -> (raywood::Vec3, f32) {
+    let center = bounds.min * 0.5 + bounds.max * 0.5;
+    let radius = (bounds.max - bounds.min).length() * 0.5;
+    if center.is_finite() && radius.is_finite() && radius > 0.0 {
+        (center, radius)
+    } else {
+        (raywood::Vec3::ZERO, 1.0)
+    }
+}

@@ -1,0 +1,236 @@
+//! The triangles of glTF meshes.
+
+use std::collections::HashMap;
+use std::ops::Add;
+
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+use raywood::Vec3;
+
+use super::accessor;
+use super::document::Document;
+use super::node::Instance;
+use crate::error::{LoadError, Place};
+use crate::formats::notes::{Fault, NOT_FINITE, Notes};
+use crate::formats::raw_mesh::RawMesh;
+use crate::{MaterialId, Rgb};
+
+static NOT_TRIANGLES: Fault = Fault {
+    one: "primitive has points or lines",
+    many: "primitives have points or lines",
+    remedy: "left out: only triangles are shown",
+};
+
+static NOT_WHOLE: Fault = Fault {
+    one: "primitive ends within a triangle",
+    many: "primitives end within a triangle",
+    remedy: "that triangle is left out",
+};
+
+/// How many vertices and triangles there are, or at most.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Size {
+    pub(super) vertices: u64,
+    pub(super) triangles: u64,
+}
+
+impl Add for Size {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            vertices: self.vertices.saturating_add(other.vertices),
+            triangles: self.triangles.saturating_add(other.triangles),
+        }
+    }
+}
+
+/// The number of an attribute's accessor.
+fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<usize> {
+    primitive.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value())
+}
+
+/// The accessors of a primitive's vertices: positions, and possibly normals and colours.
+type VertexArrays = (usize, Option<usize>, Option<usize>);
+
+/// The vertex arrays of a primitive, if it has positions.
+fn vertex_arrays(primitive: &Primitive) -> Option<VertexArrays> {
+    let positions = attribute(primitive, Semantic::Positions)?;
+    let normals = attribute(primitive, Semantic::Normals);
+    Some((positions, normals, attribute(primitive, Semantic::Colors(0))))
+}
+
+/// The size of a mesh, from what its accessors promise and their buffers can hold. Arrays that primitives share count once.
+pub(super) fn size(document: &Document<'_>, mesh: usize) -> Result<Size, LoadError> {
+    let mut size = Size::default();
+    let mut seen = HashMap::new();
+    for primitive in document.root.meshes.get(mesh).iter().flat_map(|mesh| &mesh.primitives) {
+        let Some(arrays) = vertex_arrays(primitive) else { continue };
+        let vertices = accessor::open(document, arrays.0)?.count as u64;
+        let corners = match primitive.indices {
+            Some(indices) => accessor::open(document, indices.value())?.count as u64,
+            None => vertices,
+        };
+        if seen.insert(arrays, ()).is_none() {
+            size.vertices = size.vertices.saturating_add(vertices);
+        }
+        let triangles = match primitive.mode {
+            Checked::Valid(Mode::Triangles) => corners / 3,
+            Checked::Valid(Mode::TriangleStrip | Mode::TriangleFan) => corners.saturating_sub(2),
+            _ => 0,
+        };
+        size.triangles = size.triangles.saturating_add(triangles);
+    }
+    Ok(size)
+}
+
+/// Adds the triangles that a node shows.
+pub(super) fn add(
+    document: &Document<'_>,
+    instance: &Instance<'_>,
+    raw: &mut RawMesh,
+    notes: &mut Notes,
+) -> Result<(), LoadError> {
+    let Some(mesh_index) = instance.node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+    let Some(mesh) = document.root.meshes.get(mesh_index) else { return Ok(()) };
+    if instance.node.skin.is_some() {
+        notes.say("skinned meshes are shown as stored, in their bind pose");
+    }
+    let morphs = instance.node.weights.as_ref().or(mesh.weights.as_ref());
+    if morphs.is_some_and(|weights| weights.iter().any(|&weight| weight != 0.0)) {
+        notes.say("morph targets are left out: shown as stored");
+    }
+
+    let default_material = document.root.materials.len();
+    let mut shared: HashMap<VertexArrays, u32> = HashMap::new();
+    for (p, primitive) in mesh.primitives.iter().enumerate() {
+        let place = || format!("meshes[{mesh_index}].primitives[{p}]");
+        let Some(arrays) = vertex_arrays(primitive) else { continue };
+        let mode = match primitive.mode {
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
+                mode
+            }
+            _ => {
+                notes.leave_out(&NOT_TRIANGLES, || Place::Json(place()));
+                continue;
+            }
+        };
+        let first = match shared.get(&arrays) {
+            Some(&first) => first,
+            None => {
+                let first = raw.positions.len() as u32;
+                add_vertices(document, instance, arrays, raw, notes)?;
+                shared.insert(arrays, first);
+                first
+            }
+        };
+
+        // The corners, in range.
+        let count = accessor::open(document, arrays.0)?.count;
+        let corners = match primitive.indices {
+            None => (0..count as u32).collect(),
+            Some(indices) => {
+                let index = indices.value();
+                let wrong = || {
+                    let message =
+                        "is of a type that indices cannot have, expected unsigned integers";
+                    document.error(format!("accessors[{index}]"), message)
+                };
+                let corners = accessor::open(document, index)?.indices().ok_or_else(wrong)?;
+                if let Some(at) = corners.iter().position(|&corner| corner as usize >= count) {
+                    let message = format!(
+                        "index {at} is {}, but {} has {count} vertices",
+                        corners[at],
+                        place()
+                    );
+                    return Err(document.error(format!("accessors[{index}]"), message));
+                }
+                corners
+            }
+        };
+        let whole = match mode {
+            Mode::Triangles => corners.len().is_multiple_of(3),
+            _ => corners.is_empty() || corners.len() >= 3,
+        };
+        if !whole {
+            notes.mend(&NOT_WHOLE, || Place::Json(place()))?;
+        }
+
+        // The triangles. A mirrored one keeps its outside by turning round.
+        let flip = instance.to_world.mirrors();
+        let mut push = |[a, b, c]: [u32; 3]| {
+            let [b, c] = if flip { [c, b] } else { [b, c] };
+            raw.triangles.push([a, b, c].map(|corner| first + corner));
+        };
+        match mode {
+            Mode::TriangleStrip => {
+                for (i, c) in corners.windows(3).enumerate() {
+                    push(if i % 2 == 0 { [c[0], c[1], c[2]] } else { [c[1], c[0], c[2]] });
+                }
+            }
+            Mode::TriangleFan => {
+                corners.windows(2).skip(1).for_each(|c| push([corners[0], c[0], c[1]]));
+            }
+            _ => corners.chunks_exact(3).for_each(|c| push([c[0], c[1], c[2]])),
+        }
+        let material = primitive.material.map_or(default_material, |material| material.value());
+        raw.materials.resize(raw.triangles.len(), material as MaterialId);
+    }
+    Ok(())
+}
+
+/// Adds the vertices of a primitive in world space.
+fn add_vertices(
+    document: &Document<'_>,
+    instance: &Instance<'_>,
+    (positions, normals, colors): VertexArrays,
+    raw: &mut RawMesh,
+    notes: &mut Notes,
+) -> Result<(), LoadError> {
+    let to_world = instance.to_world;
+    let first = raw.positions.len();
+    let open = |index: usize, components: &[usize], count: Option<usize>| {
+        let reader = accessor::open(document, index)?;
+        let place = || format!("accessors[{index}]");
+        if !components.contains(&reader.components) {
+            let (found, expected) = (reader.components, components[0]);
+            let message = format!("has {found} numbers an element, expected {expected}");
+            return Err(document.error(place(), message));
+        }
+        match count {
+            Some(count) if count != reader.count => {
+                let message = format!("has {} elements, but POSITION has {count}", reader.count);
+                Err(document.error(place(), message))
+            }
+            _ => Ok(reader),
+        }
+    };
+
+    let reader = open(positions, &[3], None)?;
+    let count = reader.count;
+    reader.read::<3>(|p| raw.positions.push(to_world.point(p)));
+    for (i, position) in raw.positions[first..].iter().enumerate() {
+        if !position.is_finite() {
+            let (node, place) = (instance.index, format!("accessors[{positions}]"));
+            notes.mend(&NOT_FINITE, || {
+                Place::Json(format!("{place}, element {i}, in nodes[{node}]"))
+            })?;
+        }
+    }
+
+    if let Some(normals) = normals {
+        let normal_transform = to_world.for_normals();
+        raw.normals.resize(first, Vec3::ZERO);
+        open(normals, &[3], Some(count))?
+            .read::<3>(|n| raw.normals.push(normal_transform.direction(n)));
+    } else if !raw.normals.is_empty() {
+        raw.normals.resize(first + count, Vec3::ZERO);
+    }
+    if let Some(colors) = colors {
+        raw.colors.resize(first, Rgb::ONE);
+        open(colors, &[3, 4], Some(count))?.read::<3>(|c| raw.colors.push(Rgb::from(c)));
+    } else if !raw.colors.is_empty() {
+        raw.colors.resize(first + count, Rgb::ONE);
+    }
+    Ok(())
+}
