@@ -24,6 +24,7 @@ pub(super) const LAMP: MaterialId = 15;
 pub(super) const IRON: MaterialId = 16;
 pub(super) const SEA: MaterialId = 17;
 pub(super) const TERRACE: MaterialId = 18;
+pub(super) const GOLD_LEAF: MaterialId = 19;
 
 /// All materials, in the order of their numbers.
 pub(super) fn materials() -> Vec<Material> {
@@ -89,8 +90,8 @@ pub(super) fn materials() -> Vec<Material> {
         ),
         matt(
             "vault",
-            Rgb::new(0.70, 0.66, 0.59),
-            Pattern::Marble { vein: Rgb::new(0.52, 0.48, 0.42), size: 1.6 },
+            Rgb::new(0.10, 0.20, 0.42),
+            Pattern::Marble { vein: Rgb::new(0.16, 0.30, 0.52), size: 1.6 },
         ),
         matt(
             "stone",
@@ -163,5 +164,6 @@ pub(super) fn materials() -> Vec<Material> {
                 joint: 0.012,
             },
         ),
+        matt("gold leaf", Rgb::new(0.86, 0.60, 0.20), Pattern::Plain),
     ]
 }

@@ -5,6 +5,7 @@ mod ornaments;
 mod pillars;
 mod plan;
 mod shell;
+mod stars;
 
 use raywood::{Spheres, Vec3};
 
@@ -43,8 +44,8 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: cameras(),
         background: Background {
-            zenith: Rgb::new(0.16, 0.34, 0.72),
-            horizon: Rgb::new(0.95, 0.90, 0.82),
+            zenith: Rgb::new(0.12, 0.30, 0.70),
+            horizon: Rgb::new(0.92, 0.74, 0.54),
             nadir: Rgb::new(0.20, 0.30, 0.36),
         },
         ..Scene::default()
@@ -89,16 +90,16 @@ fn lights() -> Vec<Light> {
     let up = |position| LightKind::Spot {
         position,
         direction: Vec3::Y,
-        cos_inner: 0.75,
+        cos_inner: 0.70,
         cos_outer: 0.02,
     };
-    let sun = Vec3::new(-0.74, -0.50, -0.30).normalize_or_zero();
+    let sun = Vec3::new(-0.82, -0.40, -0.40).normalize_or_zero();
     vec![
-        light("sky", LightKind::Ambient, Rgb::new(0.10, 0.115, 0.15)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(1.9, 1.55, 1.12)),
+        light("sky", LightKind::Ambient, Rgb::new(0.15, 0.155, 0.17)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.3, 1.75, 1.10)),
         // The sun's patches on the floor send light up: lamps that shine only upwards stand in for them.
-        light("bounce near", up(Vec3::new(0.6, 0.02, 1.0)), Rgb::new(6.5, 5.2, 3.7)),
-        light("bounce far", up(Vec3::new(0.6, 0.02, -15.0)), Rgb::new(8.0, 6.4, 4.6)),
+        light("bounce near", up(Vec3::new(0.2, 0.02, 0.0)), Rgb::new(13.0, 9.8, 6.4)),
+        light("bounce far", up(Vec3::new(0.2, 0.02, -14.0)), Rgb::new(15.0, 11.5, 7.6)),
         // Daylight through the door, and from behind the eye.
         light(
             "door",
@@ -113,7 +114,7 @@ fn lights() -> Vec<Light> {
         light(
             "front",
             LightKind::Point { position: Vec3::new(-1.5, 3.6, 8.2) },
-            Rgb::new(2.4, 2.8, 3.6),
+            Rgb::new(4.4, 4.6, 5.0),
         ),
     ]
 }

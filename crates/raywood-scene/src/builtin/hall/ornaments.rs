@@ -26,7 +26,7 @@ pub(super) fn add_ornaments(mesh: &mut MeshBuilder, detail: usize) -> Vec<Ball> 
         on_pedestal(x, z)
     };
     let right = stand(1.62, -0.6);
-    let left = stand(-1.62, -2.6);
+    let left = stand(-1.70, -0.9);
     let far_right = stand(1.62, -9.4);
     let far_left = stand(-1.62, -11.4);
     let cup = cup(detail);
@@ -40,7 +40,7 @@ pub(super) fn add_ornaments(mesh: &mut MeshBuilder, detail: usize) -> Vec<Ball> 
         glass_knot(detail).placed(&Placement::at(left + Vec3::new(0.0, 0.52, 0.0)).turned(20.0));
     mesh.add(&knot, &Placement::IDENTITY, m::SEA_GLASS);
 
-    balls.push((Vec3::new(-0.95, 0.42, 0.3), 0.42, m::MIRROR));
+    balls.push((Vec3::new(-1.22, 0.36, 2.3), 0.36, m::MIRROR));
     balls.push((Vec3::new(0.38, 0.20, 1.55), 0.20, m::RUBY_GLASS));
     balls.push((Vec3::new(0.78, 0.13, 1.15), 0.13, m::GOLD));
 

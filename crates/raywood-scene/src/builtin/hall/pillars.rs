@@ -74,11 +74,11 @@ pub(super) fn fluted_shaft(detail: usize) -> Part {
 
 /// A shaft like a rope of six strands.
 pub(super) fn twisted_shaft(detail: usize) -> Part {
-    revolve_with(&shaft_profile(36 * detail), 48 * detail, |radius, y, angle| {
+    revolve_with(&shaft_profile(28 * detail), 42 * detail, |radius, y, angle| {
         let ends = ramp(y - SHAFT_BOTTOM - 0.05, 0.25) * ramp(SHAFT_TOP - 0.05 - y, 0.25);
         // Strands are round outside and meet in a valley.
         let strand = (3.0 * (angle - 2.0 * y)).sin().abs().sqrt();
-        radius * (1.0 - 0.17 * ends * (1.0 - strand))
+        radius * (1.0 - 0.26 * ends * (1.0 - strand))
     })
 }
 

@@ -34,8 +34,8 @@ pub(super) const AISLE_TOP: f32 = 6.6;
 /// The arches from pillar to pillar.
 pub(super) const ARCADE: Arch = Arch::round(1.72, ARCADE_SPRING);
 /// The windows of the outer walls, and their sill.
-pub(super) const WINDOW: Arch = Arch::round(1.30, 3.75);
-pub(super) const WINDOW_SILL: f32 = 0.85;
+pub(super) const WINDOW: Arch = Arch::round(1.45, 3.80);
+pub(super) const WINDOW_SILL: f32 = 0.55;
 /// The windows of the clerestory, above the cornice.
 pub(super) const CLERESTORY: Arch = Arch { half_width: 1.62, spring: 7.35, rise: 1.95 };
 /// The door to the sea in the end wall.

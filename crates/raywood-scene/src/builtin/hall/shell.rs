@@ -8,6 +8,7 @@ use super::super::modelling::{
 };
 use super::materials as m;
 use super::plan::*;
+use super::stars::stars;
 
 /// Adds everything that is built of stone but the pillars.
 pub(super) fn add_shell(mesh: &mut MeshBuilder, detail: usize) {
@@ -78,6 +79,8 @@ fn add_bays(mesh: &mut MeshBuilder, detail: usize) {
     let window_trim = window_trim(segments, detail);
     let nave_vault = groin_vault(&NAVE_VAULT, 2 * segments);
     let aisle_vault = groin_vault(&AISLE_VAULT, segments);
+    let nave_stars = stars(&NAVE_VAULT, 0.52);
+    let aisle_stars = stars(&AISLE_VAULT, 0.52);
     let rib = roll_rib(0.10, 0.13, detail);
     let thin_rib = roll_rib(0.07, 0.08, detail);
 
@@ -93,6 +96,7 @@ fn add_bays(mesh: &mut MeshBuilder, detail: usize) {
 
             let aisle = Placement::at(Vec3::new(side * AISLE_X, 0.0, z));
             mesh.add(&aisle_vault, &aisle, m::VAULT);
+            mesh.add(&aisle_stars, &aisle, m::GOLD_LEAF);
             for sign in [1.0, -1.0] {
                 let groin = AISLE_VAULT.groin_path(sign, segments);
                 mesh.add(&sweep(&thin_rib, &groin, false), &aisle, m::STONE);
@@ -100,6 +104,7 @@ fn add_bays(mesh: &mut MeshBuilder, detail: usize) {
         }
         let nave = Placement::at(Vec3::new(0.0, 0.0, z));
         mesh.add(&nave_vault, &nave, m::VAULT);
+        mesh.add(&nave_stars, &nave, m::GOLD_LEAF);
         for sign in [1.0, -1.0] {
             let groin = NAVE_VAULT.groin_path(sign, 2 * segments);
             mesh.add(&sweep(&rib, &groin, false), &nave, m::STONE);

@@ -21,6 +21,20 @@ pub struct GroinVault {
 }
 
 impl GroinVault {
+    /// The point of the underside over a place in plan (inside the bay), and the unit normal there, down into the room.
+    pub fn surface(&self, x: f32, z: f32) -> (Vec3, Vec3) {
+        let (u, v) = (x / self.half_x, z / self.half_z);
+        // The higher barrel counts; which one it is changes at the groins.
+        let nearer = if u.abs() < v.abs() { u } else { v };
+        let height = (1.0 - nearer * nearer).max(0.0).sqrt();
+        let out = if u.abs() < v.abs() {
+            Vec3::new(u / self.half_x, height / self.rise, 0.0)
+        } else {
+            Vec3::new(0.0, height / self.rise, v / self.half_z)
+        };
+        (Vec3::new(x, self.spring + self.rise * height, z), -out.normalize_or_zero())
+    }
+
     /// The path of a groin across the whole vault; `sign` (1 or -1) tells which diagonal. Up is down into the room, where ribs go.
     pub fn groin_path(&self, sign: f32, segments: usize) -> Vec<PathPoint> {
         (0..=segments)
@@ -65,5 +79,8 @@ mod tests {
         assert!(part.normals.iter().all(|n| n.y <= 1e-3 && (n.length() - 1.0).abs() < 1e-4));
         let top = part.positions.iter().map(|p| p.y).fold(0.0, f32::max);
         assert!((top - 8.5).abs() < 1e-5);
+        for p in &part.positions {
+            assert!((vault.surface(p.x, p.z).0 - *p).length() < 2e-2, "{p:?}");
+        }
     }
 }
