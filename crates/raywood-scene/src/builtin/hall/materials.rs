@@ -59,7 +59,7 @@ pub(super) fn materials() -> Vec<Material> {
             "nave floor",
             Rgb::new(0.76, 0.72, 0.64),
             Pattern::Tiles {
-                other: Rgb::new(0.045, 0.055, 0.055),
+                other: Rgb::new(0.085, 0.100, 0.095),
                 size: 0.80,
                 edge: [diagonal, diagonal],
                 joint: 0.008,
@@ -102,13 +102,13 @@ pub(super) fn materials() -> Vec<Material> {
             "shaft",
             Rgb::new(0.74, 0.69, 0.61),
             Pattern::Marble { vein: Rgb::new(0.46, 0.38, 0.30), size: 0.55 },
-            0.03,
+            0.0,
         ),
         polished(
             "twisted shaft",
             Rgb::new(0.16, 0.26, 0.21),
             Pattern::Marble { vein: Rgb::new(0.58, 0.64, 0.56), size: 0.45 },
-            0.05,
+            0.0,
         ),
         Material {
             name: "gold".into(),

@@ -93,14 +93,26 @@ fn lights() -> Vec<Light> {
         cos_inner: 0.70,
         cos_outer: 0.02,
     };
-    let sun = Vec3::new(-0.82, -0.40, -0.40).normalize_or_zero();
+    let sun = Vec3::new(-0.80, -0.45, -0.40).normalize_or_zero();
+    let window_light = Vec3::new(0.84, -0.46, -0.28).normalize_or_zero();
     vec![
-        light("sky", LightKind::Ambient, Rgb::new(0.15, 0.155, 0.17)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.3, 1.75, 1.10)),
+        light("sky", LightKind::Ambient, Rgb::new(0.105, 0.125, 0.175)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.7, 2.0, 1.22)),
+        // The blue of the sky comes in through the windows on the side away from the sun.
+        light(
+            "windows",
+            LightKind::Directional { direction: window_light },
+            Rgb::new(0.26, 0.33, 0.46),
+        ),
         // The sun's patches on the floor send light up: lamps that shine only upwards stand in for them.
-        light("bounce near", up(Vec3::new(0.2, 0.02, 0.0)), Rgb::new(13.0, 9.8, 6.4)),
-        light("bounce far", up(Vec3::new(0.2, 0.02, -14.0)), Rgb::new(15.0, 11.5, 7.6)),
-        // Daylight through the door, and from behind the eye.
+        light("bounce near", up(Vec3::new(0.9, 0.02, 4.2)), Rgb::new(20.0, 14.6, 9.2)),
+        light("bounce far", up(Vec3::new(0.8, 0.02, -13.0)), Rgb::new(20.0, 14.6, 9.0)),
+        // Daylight from behind the eye, and through the door.
+        light(
+            "front",
+            LightKind::Point { position: Vec3::new(0.8, 3.0, 8.2) },
+            Rgb::new(6.5, 6.0, 5.6),
+        ),
         light(
             "door",
             LightKind::Spot {
@@ -110,11 +122,6 @@ fn lights() -> Vec<Light> {
                 cos_outer: 0.2,
             },
             Rgb::new(9.0, 10.5, 13.0),
-        ),
-        light(
-            "front",
-            LightKind::Point { position: Vec3::new(-1.5, 3.6, 8.2) },
-            Rgb::new(4.4, 4.6, 5.0),
         ),
     ]
 }
