@@ -20,7 +20,7 @@ pub(super) const ENTRY: Builtin = Builtin {
 };
 
 const FLOOR: u32 = 0;
-/// The materials of the spheres begin here: one per generation, in a cycle.
+/// The materials of the spheres begin here: one for each of the first generations, then the last.
 const METALS: u32 = 1;
 const METAL_COUNT: u32 = 4;
 
@@ -29,7 +29,7 @@ fn build(values: &Values) -> Scene {
     let mut flake = Flake::with_capacity((9usize.pow(depth + 1) - 1) / 8);
     // The whole flake leans a little towards the camera, to show its crown.
     let axis = Vec3::new(0.10, 1.0, 0.28).normalize_or_zero();
-    flake.grow(Vec3::new(0.0, 1.98, 0.0), 1.0, axis, depth);
+    flake.grow(Vec3::new(0.0, 1.98, 0.0), 1.0, axis, (0, depth));
 
     let mut floor = Part::default();
     floor.add_polygon(&[
@@ -49,15 +49,15 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: vec![Camera {
             name: "camera".into(),
-            eye: Vec3::new(-2.2, 3.1, 6.6),
-            target: Vec3::new(0.05, 1.78, 0.0),
+            eye: Vec3::new(-1.7, 3.35, 5.6),
+            target: Vec3::new(0.0, 1.86, 0.0),
             up: Vec3::Y,
             fov_y: 36.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.07, 0.13, 0.30),
-            horizon: Rgb::new(0.74, 0.70, 0.66),
-            nadir: Rgb::new(0.12, 0.12, 0.13),
+            zenith: Rgb::new(0.03, 0.07, 0.22),
+            horizon: Rgb::new(0.62, 0.52, 0.48),
+            nadir: Rgb::new(0.05, 0.05, 0.06),
         },
         ..Scene::default()
     }
@@ -74,12 +74,12 @@ impl Flake {
         Self { spheres: Vec::with_capacity(count), materials: Vec::with_capacity(count) }
     }
 
-    /// Adds a sphere and, `depth` generations deep, nine spheres of a third of its size on it: six around its equator and three
-    /// around the pole to which `axis` points.
-    fn grow(&mut self, center: Vec3, radius: f32, axis: Vec3, depth: u32) {
+    /// Adds a sphere of a generation and, up to the last one, nine spheres of a third of its size on it: six around its equator
+    /// and three around the pole to which `axis` points.
+    fn grow(&mut self, center: Vec3, radius: f32, axis: Vec3, (generation, last): (u32, u32)) {
         self.spheres.push((center, radius));
-        self.materials.push(METALS + depth % METAL_COUNT);
-        if depth == 0 {
+        self.materials.push(METALS + generation.min(METAL_COUNT - 1));
+        if generation == last {
             return;
         }
         let (s, t) = axis.orthonormal_basis();
@@ -92,7 +92,12 @@ impl Flake {
         };
         for direction in ring(6, 0.0, 0.0).chain(ring(3, 30.0, 54.735_6)) {
             let child = radius / 3.0;
-            self.grow(center + (radius + child) * direction, child, direction, depth - 1);
+            self.grow(
+                center + (radius + child) * direction,
+                child,
+                direction,
+                (generation + 1, last),
+            );
         }
     }
 }
@@ -115,7 +120,7 @@ fn lights() -> Vec<Light> {
 fn materials() -> Vec<Material> {
     let metal = |name: &str, color: Rgb| Material {
         name: name.into(),
-        diffuse: 0.28 * color,
+        diffuse: 0.35 * color,
         specular: Rgb::splat(0.5),
         shininess: 220.0,
         mirror: 0.62 * color,
@@ -124,14 +129,14 @@ fn materials() -> Vec<Material> {
     vec![
         Material {
             name: "floor".into(),
-            diffuse: Rgb::new(0.42, 0.40, 0.37),
-            pattern: Pattern::Checker { other: Rgb::new(0.20, 0.21, 0.23), size: 1.5 },
-            mirror: Rgb::splat(0.05),
+            diffuse: Rgb::new(0.34, 0.30, 0.26),
+            pattern: Pattern::Checker { other: Rgb::new(0.07, 0.075, 0.09), size: 1.2 },
+            mirror: Rgb::splat(0.08),
             ..Material::default()
         },
         metal("silver", Rgb::new(0.95, 0.94, 0.92)),
-        metal("gold", Rgb::new(1.00, 0.78, 0.40)),
-        metal("copper", Rgb::new(0.96, 0.60, 0.44)),
-        metal("steel", Rgb::new(0.62, 0.72, 0.86)),
+        metal("steel", Rgb::new(0.50, 0.66, 0.90)),
+        metal("gold", Rgb::new(1.00, 0.74, 0.32)),
+        metal("copper", Rgb::new(0.98, 0.56, 0.36)),
     ]
 }

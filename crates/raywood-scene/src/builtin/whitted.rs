@@ -29,7 +29,7 @@ fn build(_: &Values) -> Scene {
     let mut mesh = MeshBuilder::default();
     mesh.add(&floor, &Placement::IDENTITY, FLOOR);
 
-    let spheres = vec![(Vec3::new(0.42, 1.62, 0.0), 0.92), (Vec3::new(-1.05, 1.12, -2.6), 0.86)];
+    let spheres = vec![(Vec3::new(0.52, 1.66, 0.0), 0.92), (Vec3::new(-1.16, 1.02, -1.9), 0.84)];
     Scene {
         mesh: mesh.finish(),
         spheres: Spheres::new(spheres).expect("the spheres are finite"),
@@ -49,15 +49,15 @@ fn build(_: &Values) -> Scene {
         ],
         cameras: vec![Camera {
             name: "camera".into(),
-            eye: Vec3::new(-0.25, 1.95, 5.4),
-            target: Vec3::new(-0.12, 1.32, 0.0),
+            eye: Vec3::new(-0.10, 2.35, 5.2),
+            target: Vec3::new(-0.20, 1.22, 0.0),
             up: Vec3::Y,
             fov_y: 38.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.06, 0.16, 0.46),
-            horizon: Rgb::new(0.36, 0.58, 0.86),
-            nadir: Rgb::new(0.10, 0.22, 0.48),
+            zenith: Rgb::new(0.05, 0.14, 0.44),
+            horizon: Rgb::new(0.30, 0.52, 0.82),
+            nadir: Rgb::new(0.20, 0.40, 0.70),
         },
         ..Scene::default()
     }

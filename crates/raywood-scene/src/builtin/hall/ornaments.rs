@@ -123,7 +123,7 @@ pub(super) fn vase(detail: usize) -> Part {
         .line_to(0.19, 0.0)
         .arc([0.19, 0.03], 1.0, 180.0, 3 * detail)
         .curve_to([[0.12, 0.10], [0.12, 0.14]], 0.15, 0.19, 5 * detail)
-        .curve_to([[0.40, 0.42], [0.44, 0.82]], 0.17, 1.00, 14 * detail)
+        .curve_to([[0.40, 0.42], [0.44, 0.82]], 0.17, 1.00, 10 * detail)
         .smooth()
         .curve_to([[0.12, 1.04], [0.12, 1.12]], 0.22, 1.22, 6 * detail)
         .smooth()
@@ -131,7 +131,7 @@ pub(super) fn vase(detail: usize) -> Part {
         .smooth()
         .curve_to([[0.10, 1.12], [0.10, 1.04]], 0.14, 0.98, 6 * detail)
         .curve_to([[0.30, 0.80], [0.20, 0.30]], 0.0, 0.25, 8 * detail);
-    revolve(&profile, 48 * detail)
+    revolve(&profile, 36 * detail)
 }
 
 /// A lamp at a place along the nave: a golden hoop with glowing globes, hung from the crown of the vault.

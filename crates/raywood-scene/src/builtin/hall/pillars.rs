@@ -39,7 +39,7 @@ pub(super) fn base_and_capital(detail: usize) -> Part {
         .line_to(0.425, 0.665)
         .line_to(0.425, 0.69)
         .curve_to([[0.405, 0.69], [0.40, 0.70]], RADIUS_BOTTOM, SHAFT_BOTTOM, 2 * detail);
-    part.add_part(&revolve(&base, 32 * detail));
+    part.add_part(&revolve(&base, 24 * detail));
 
     // The capital: a ring at the neck, a bell, leaves in two rows, volutes under the corners, and the slab.
     let bell = Profile::start(RADIUS_TOP, SHAFT_TOP)
@@ -48,7 +48,7 @@ pub(super) fn base_and_capital(detail: usize) -> Part {
         .line_to(RADIUS_TOP - 0.01, SHAFT_TOP + 0.06)
         .curve_to([[0.325, 3.80], [0.35, 4.03]], 0.455, BELL_TOP - 0.03, 6 * detail)
         .line_to(0.455, BELL_TOP);
-    part.add_part(&revolve(&bell, 32 * detail));
+    part.add_part(&revolve(&bell, 24 * detail));
     for i in 0..8 {
         let turned = |half: f32| Placement::IDENTITY.turned(45.0 * (i as f32 + half));
         part.add_part(&leaf(0.30, detail).placed(&turned(0.5)));
@@ -101,7 +101,7 @@ fn ramp(x: f32, length: f32) -> f32 {
 
 /// A leaf on the side of the bell towards +x, `height` tall, with lobed edges, a midrib and a tip that curls over.
 fn leaf(height: f32, detail: usize) -> Part {
-    let (rows, columns) = (9 * detail, 4 * detail);
+    let (rows, columns) = (8 * detail, 3 * detail);
     let mut part = Part::default();
     part.add_grid(Cells::open(columns), Cells::open(rows), |i, j| {
         let s = 2.0 * i as f32 / columns as f32 - 1.0;
@@ -125,7 +125,7 @@ fn leaf(height: f32, detail: usize) -> Part {
 
 /// A spiral that grows out of the bell and rolls up under the slab's corner, in the plane z = 0 towards +x.
 fn volute(detail: usize) -> Part {
-    let steps = 28 * detail;
+    let steps = 20 * detail;
     let path: Vec<_> = (0..=steps)
         .map(|i| {
             let t = i as f32 / steps as f32;
@@ -135,7 +135,7 @@ fn volute(detail: usize) -> Part {
             PathPoint { position: roll, up: Vec3::Z }
         })
         .collect();
-    let mut part = sweep(&Profile::circle(0.026, 5 * detail), &path, false);
+    let mut part = sweep(&Profile::circle(0.026, 4 * detail), &path, false);
     let eye = Profile::start(0.0, -0.034).arc([0.0, 0.0], 1.0, 180.0, 4 * detail);
     part.add_part(&revolve(&eye, 8 * detail).placed(&Placement::at(Vec3::new(0.545, 4.02, 0.0))));
     part

@@ -52,7 +52,8 @@ impl GroinVault {
 
 /// The underside of a groin vault; each barrel's arc is cut into `segments` (even, so that one lies on the crown).
 pub fn groin_vault(vault: &GroinVault, segments: usize) -> Part {
-    let across = (segments / 3).max(2);
+    // Along the crown a barrel is straight, so few cells do.
+    let across = (segments / 16).max(2);
     let mut part = Part::default();
     for (along_x, sign) in [(true, 1.0), (true, -1.0), (false, 1.0), (false, -1.0)] {
         part.add_grid(Cells::open(across), Cells::open(segments), |i, j| {

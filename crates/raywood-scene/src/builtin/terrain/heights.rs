@@ -27,10 +27,10 @@ impl Heights {
         let (wx, wz) = (px + 0.35 * bend(40), pz + 0.35 * bend(41));
 
         let coast = 1.0 - smoothstep(0.55, 1.0, self.distance_from_middle(px, pz));
-        let mountains = smoothstep(0.95, 0.10, self.distance_from_middle(1.25 * px, 1.25 * pz));
+        let mountains = smoothstep(0.95, 0.0, self.distance_from_middle(1.2 * px, 1.2 * pz));
         let hills = 0.5 + 0.5 * self.eroded(wx, wz);
         let ridges = self.ridged(wx, wz);
-        let land = 60.0 + 620.0 * hills * hills + 2050.0 * ridges * mountains;
+        let land = 40.0 + 520.0 * hills * hills + 2600.0 * ridges * ridges * mountains;
         coast * land - SEA_FLOOR * (1.0 - coast)
     }
 
@@ -50,8 +50,8 @@ impl Heights {
         let (mut sum, mut slope) = (0.0, [0.0f32; 2]);
         for octave in 0..9 {
             let (value, [dx, dz]) = gradient2(px, pz, self.seed + octave);
-            slope[0] += 0.6 * dx;
-            slope[1] += 0.6 * dz;
+            slope[0] += 0.35 * dx;
+            slope[1] += 0.35 * dz;
             sum += height * value / (1.0 + slope[0] * slope[0] + slope[1] * slope[1]);
             (px, pz) = turn(px, pz);
             height *= 0.5;
@@ -60,21 +60,18 @@ impl Heights {
     }
 
     /// Ridged fractal noise, 0 to about 1: sharp crests where each octave crosses zero, rough near crests and smooth in valleys
-    /// (Musgrave 1994), its octaves faded on steep slopes like those of [`eroded`](Self::eroded).
+    /// (Musgrave 1994).
     fn ridged(&self, x: f32, z: f32) -> f32 {
-        let (mut px, mut pz, mut height) = (0.8 * x, 0.8 * z, 0.5);
-        let (mut sum, mut weight, mut slope) = (0.0, 1.0f32, [0.0f32; 2]);
+        let (mut px, mut pz, mut height) = (1.3 * x, 1.3 * z, 0.5);
+        let (mut sum, mut weight) = (0.0, 1.0f32);
         for octave in 0..11 {
-            let (value, [dx, dz]) = gradient2(px, pz, self.seed + 20 + octave);
+            let (value, _) = gradient2(px, pz, self.seed + 20 + octave);
             let crest = 1.0 - value.abs();
             let crest = crest * crest;
-            slope[0] += 0.35 * dx * height;
-            slope[1] += 0.35 * dz * height;
-            let fade = 1.0 / (1.0 + 2.0 * (slope[0] * slope[0] + slope[1] * slope[1]));
-            sum += height * crest * weight * fade;
-            weight = (1.6 * crest).clamp(0.0, 1.0);
+            sum += height * crest * weight;
+            weight = (1.9 * crest).clamp(0.0, 1.0);
             (px, pz) = turn(px, pz);
-            height *= 0.5;
+            height *= 0.47;
         }
         sum
     }

@@ -41,10 +41,10 @@ const SEA_EXTENT: f32 = 60_000.0;
 
 fn build(values: &Values) -> Scene {
     let (n, seed) = (values.get("n") as usize, values.get("seed") as u32);
-    let eye = Vec3::new(-900.0, 0.0, 5900.0);
+    let eye = Vec3::new(-1800.0, 0.0, 8200.0);
     let heights = Heights::new(seed);
     // Wherever the seed puts land, the eye stays well above it.
-    let eye = Vec3::new(eye.x, 330.0 + heights.at(eye.x, eye.z).max(0.0), eye.z);
+    let eye = Vec3::new(eye.x, 420.0 + heights.at(eye.x, eye.z).max(0.0), eye.z);
     Scene {
         mesh: island(n, &heights, eye),
         materials: materials(),
@@ -52,9 +52,9 @@ fn build(values: &Values) -> Scene {
         cameras: vec![Camera {
             name: "camera".into(),
             eye,
-            target: Vec3::new(60.0, 560.0, 0.0),
+            target: Vec3::new(0.0, 620.0, 0.0),
             up: Vec3::Y,
-            fov_y: 36.0,
+            fov_y: 34.0,
         }],
         background: Background {
             zenith: Rgb::new(0.10, 0.22, 0.52),
