@@ -28,7 +28,7 @@ fn build(values: &Values) -> Scene {
     let depth = values.get("depth") as u32;
     let mut flake = Flake::with_capacity((9usize.pow(depth + 1) - 1) / 8);
     // The whole flake leans a little towards the camera, to show its crown.
-    let axis = Vec3::new(0.10, 1.0, 0.28).normalize_or_zero();
+    let axis = Vec3::new(0.16, 1.0, 0.42).normalize_or_zero();
     flake.grow(Vec3::new(0.0, 1.98, 0.0), 1.0, axis, (0, depth));
 
     let mut floor = Part::default();
@@ -49,15 +49,15 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: vec![Camera {
             name: "camera".into(),
-            eye: Vec3::new(-1.7, 3.35, 5.6),
-            target: Vec3::new(0.0, 1.86, 0.0),
+            eye: Vec3::new(-1.5, 1.05, 5.9),
+            target: Vec3::new(0.0, 2.02, 0.0),
             up: Vec3::Y,
             fov_y: 36.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.03, 0.07, 0.22),
-            horizon: Rgb::new(0.62, 0.52, 0.48),
-            nadir: Rgb::new(0.05, 0.05, 0.06),
+            zenith: Rgb::new(0.02, 0.07, 0.28),
+            horizon: Rgb::new(0.42, 0.58, 0.78),
+            nadir: Rgb::new(0.10, 0.12, 0.15),
         },
         ..Scene::default()
     }
@@ -104,10 +104,10 @@ impl Flake {
 
 fn lights() -> Vec<Light> {
     let light = |name: &str, kind, intensity| Light { name: name.into(), kind, intensity };
-    let sun = Vec3::new(-0.62, -0.70, -0.36).normalize_or_zero();
+    let sun = Vec3::new(-0.58, -0.55, -0.62).normalize_or_zero();
     vec![
         light("ambient", LightKind::Ambient, Rgb::new(0.13, 0.15, 0.19)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(1.05, 0.95, 0.80)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.1, 1.8, 1.4)),
         light(
             "fill",
             LightKind::Point { position: Vec3::new(-7.0, 4.0, 5.0) },
@@ -120,7 +120,7 @@ fn lights() -> Vec<Light> {
 fn materials() -> Vec<Material> {
     let metal = |name: &str, color: Rgb| Material {
         name: name.into(),
-        diffuse: 0.35 * color,
+        diffuse: 0.34 * color,
         specular: Rgb::splat(0.5),
         shininess: 220.0,
         mirror: 0.62 * color,
@@ -129,14 +129,14 @@ fn materials() -> Vec<Material> {
     vec![
         Material {
             name: "floor".into(),
-            diffuse: Rgb::new(0.34, 0.30, 0.26),
-            pattern: Pattern::Checker { other: Rgb::new(0.07, 0.075, 0.09), size: 1.2 },
+            diffuse: Rgb::new(0.66, 0.62, 0.55),
+            pattern: Pattern::Checker { other: Rgb::new(0.10, 0.13, 0.19), size: 1.2 },
             mirror: Rgb::splat(0.08),
             ..Material::default()
         },
         metal("silver", Rgb::new(0.95, 0.94, 0.92)),
-        metal("steel", Rgb::new(0.50, 0.66, 0.90)),
         metal("gold", Rgb::new(1.00, 0.74, 0.32)),
-        metal("copper", Rgb::new(0.98, 0.56, 0.36)),
+        metal("copper", Rgb::new(1.00, 0.50, 0.30)),
+        metal("brass", Rgb::new(1.00, 0.86, 0.58)),
     ]
 }

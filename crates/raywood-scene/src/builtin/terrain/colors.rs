@@ -24,13 +24,13 @@ pub(super) fn ground_color(p: Vec3, normal: Vec3, eye: Vec3) -> Rgb {
 
     // Bedrock in two tones, and on it what holds at this slope and height.
     let mut color = mix(DARK_ROCK, ROCK, smoothstep(-0.6, 0.7, patches + 0.5 * noise(35.0, 93)));
-    let grass = smoothstep(0.70, 0.84, flat) * smoothstep(1150.0, 700.0, height);
+    let grass = smoothstep(0.70, 0.84, flat) * smoothstep(950.0, 600.0, height);
     color = mix(color, GRASS, grass);
     let forest = smoothstep(0.74, 0.88, flat) * smoothstep(640.0, 380.0, height);
     color = mix(color, FOREST, forest * smoothstep(-0.45, 0.05, patches));
-    let snow = smoothstep(0.56, 0.74, flat) * smoothstep(1050.0, 1450.0, height);
+    let snow = smoothstep(0.50, 0.66, flat) * smoothstep(880.0, 1250.0, height);
     color = mix(color, SNOW, snow);
-    color = mix(color, SAND, smoothstep(26.0, 8.0, p.y + 6.0 * patches));
+    color = mix(color, SAND, smoothstep(12.0, 4.0, p.y + 5.0 * patches));
 
     // Air between eye and ground takes contrast away.
     let air = 1.0 - (-(p - eye).length() / 30_000.0).exp();

@@ -57,8 +57,8 @@ fn build(values: &Values) -> Scene {
             fov_y: 34.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.10, 0.22, 0.52),
-            horizon: Rgb::new(0.93, 0.74, 0.56),
+            zenith: Rgb::new(0.06, 0.18, 0.52),
+            horizon: Rgb::new(0.96, 0.74, 0.52),
             nadir: Rgb::new(0.10, 0.16, 0.22),
         },
         ..Scene::default()
@@ -133,7 +133,7 @@ fn island(n: usize, heights: &Heights, eye: Vec3) -> Mesh {
 
 fn lights() -> Vec<Light> {
     let light = |name: &str, kind, intensity| Light { name: name.into(), kind, intensity };
-    let sun = Vec3::new(0.86, -0.34, -0.42).normalize_or_zero();
+    let sun = Vec3::new(0.88, -0.36, -0.22).normalize_or_zero();
     vec![
         light("sky", LightKind::Ambient, Rgb::new(0.17, 0.21, 0.31)),
         light("sun", LightKind::Directional { direction: sun }, Rgb::new(1.75, 1.32, 0.92)),
