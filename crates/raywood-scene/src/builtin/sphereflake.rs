@@ -49,14 +49,14 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: vec![Camera {
             name: "camera".into(),
-            eye: Vec3::new(-1.5, 1.05, 5.9),
-            target: Vec3::new(0.0, 2.02, 0.0),
+            eye: Vec3::new(-1.5, 1.35, 5.9),
+            target: Vec3::new(-0.02, 2.10, 0.0),
             up: Vec3::Y,
-            fov_y: 36.0,
+            fov_y: 35.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.02, 0.07, 0.28),
-            horizon: Rgb::new(0.42, 0.58, 0.78),
+            zenith: Rgb::new(0.005, 0.035, 0.20),
+            horizon: Rgb::new(0.30, 0.47, 0.70),
             nadir: Rgb::new(0.10, 0.12, 0.15),
         },
         ..Scene::default()
@@ -123,7 +123,7 @@ fn materials() -> Vec<Material> {
         diffuse: 0.34 * color,
         specular: Rgb::splat(0.5),
         shininess: 220.0,
-        mirror: 0.62 * color,
+        mirror: 0.66 * color,
         ..Material::default()
     };
     vec![
@@ -136,7 +136,7 @@ fn materials() -> Vec<Material> {
         },
         metal("silver", Rgb::new(0.95, 0.94, 0.92)),
         metal("gold", Rgb::new(1.00, 0.74, 0.32)),
-        metal("copper", Rgb::new(1.00, 0.50, 0.30)),
-        metal("brass", Rgb::new(1.00, 0.86, 0.58)),
+        metal("copper", Rgb::new(1.00, 0.46, 0.24)),
+        metal("brass", Rgb::new(1.00, 0.70, 0.30)),
     ]
 }

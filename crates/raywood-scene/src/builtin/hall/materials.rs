@@ -131,8 +131,8 @@ pub(super) fn materials() -> Vec<Material> {
         glass("sea glass", Vec3::new(3.2, 0.45, 0.7)),
         polished(
             "porcelain",
-            Rgb::new(0.045, 0.11, 0.30),
-            Pattern::Marble { vein: Rgb::new(0.72, 0.76, 0.82), size: 0.35 },
+            Rgb::new(0.07, 0.19, 0.50),
+            Pattern::Marble { vein: Rgb::new(0.80, 0.84, 0.90), size: 0.35 },
             0.05,
         ),
         polished(

@@ -44,8 +44,8 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: cameras(),
         background: Background {
-            zenith: Rgb::new(0.12, 0.30, 0.70),
-            horizon: Rgb::new(0.92, 0.74, 0.54),
+            zenith: Rgb::new(0.00, 0.28, 0.80),
+            horizon: Rgb::new(0.93, 0.84, 0.66),
             nadir: Rgb::new(0.20, 0.30, 0.36),
         },
         ..Scene::default()

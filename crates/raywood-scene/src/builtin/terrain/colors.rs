@@ -8,7 +8,7 @@ use crate::noise::gradient2;
 
 const SAND: Rgb = Rgb::new(0.56, 0.47, 0.32);
 const FOREST: Rgb = Rgb::new(0.045, 0.085, 0.030);
-const GRASS: Rgb = Rgb::new(0.150, 0.185, 0.055);
+const GRASS: Rgb = Rgb::new(0.135, 0.170, 0.040);
 const ROCK: Rgb = Rgb::new(0.250, 0.215, 0.185);
 const DARK_ROCK: Rgb = Rgb::new(0.125, 0.112, 0.105);
 const SNOW: Rgb = Rgb::new(0.86, 0.89, 0.94);
@@ -24,15 +24,15 @@ pub(super) fn ground_color(p: Vec3, normal: Vec3, eye: Vec3) -> Rgb {
 
     // Bedrock in two tones, and on it what holds at this slope and height.
     let mut color = mix(DARK_ROCK, ROCK, smoothstep(-0.6, 0.7, patches + 0.5 * noise(35.0, 93)));
-    let grass = smoothstep(0.70, 0.84, flat) * smoothstep(950.0, 600.0, height);
+    let grass = smoothstep(0.70, 0.84, flat) * smoothstep(850.0, 520.0, height);
     color = mix(color, GRASS, grass);
     let forest = smoothstep(0.74, 0.88, flat) * smoothstep(640.0, 380.0, height);
     color = mix(color, FOREST, forest * smoothstep(-0.45, 0.05, patches));
-    let snow = smoothstep(0.50, 0.66, flat) * smoothstep(880.0, 1250.0, height);
+    let snow = smoothstep(0.38, 0.56, flat) * smoothstep(760.0, 1100.0, height);
     color = mix(color, SNOW, snow);
     color = mix(color, SAND, smoothstep(12.0, 4.0, p.y + 5.0 * patches));
 
     // Air between eye and ground takes contrast away.
-    let air = 1.0 - (-(p - eye).length() / 30_000.0).exp();
+    let air = 1.0 - (-(p - eye).length() / 75_000.0).exp();
     mix(color, HAZE, air)
 }

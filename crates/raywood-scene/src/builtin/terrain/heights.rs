@@ -30,7 +30,7 @@ impl Heights {
         let mountains = smoothstep(0.95, 0.0, self.distance_from_middle(1.2 * px, 1.2 * pz));
         let hills = 0.5 + 0.5 * self.eroded(wx, wz);
         let ridges = self.ridged(wx, wz);
-        let land = 40.0 + 520.0 * hills * hills + 2250.0 * ridges.powf(1.5) * mountains;
+        let land = 40.0 + 640.0 * hills * hills + 2150.0 * ridges.powf(1.35) * mountains;
         coast * land - SEA_FLOOR * (1.0 - coast)
     }
 
@@ -71,7 +71,7 @@ impl Heights {
             sum += height * crest * weight;
             weight = (1.6 * crest).clamp(0.0, 1.0);
             (px, pz) = turn(px, pz);
-            height *= 0.47;
+            height *= 0.46;
         }
         sum
     }

@@ -25,7 +25,7 @@ pub(super) const ENTRY: Builtin = Builtin {
         Parameter {
             name: "seed",
             description: "which island",
-            default: 7,
+            default: 11,
             min: 0,
             max: u32::MAX as u64,
         },
@@ -52,13 +52,13 @@ fn build(values: &Values) -> Scene {
         cameras: vec![Camera {
             name: "camera".into(),
             eye,
-            target: Vec3::new(0.0, 620.0, 0.0),
+            target: Vec3::new(0.0, 560.0, 0.0),
             up: Vec3::Y,
-            fov_y: 34.0,
+            fov_y: 31.0,
         }],
         background: Background {
-            zenith: Rgb::new(0.06, 0.18, 0.52),
-            horizon: Rgb::new(0.96, 0.74, 0.52),
+            zenith: Rgb::new(0.01, 0.22, 0.66),
+            horizon: Rgb::new(0.90, 0.83, 0.68),
             nadir: Rgb::new(0.10, 0.16, 0.22),
         },
         ..Scene::default()
@@ -135,8 +135,8 @@ fn lights() -> Vec<Light> {
     let light = |name: &str, kind, intensity| Light { name: name.into(), kind, intensity };
     let sun = Vec3::new(0.88, -0.36, -0.22).normalize_or_zero();
     vec![
-        light("sky", LightKind::Ambient, Rgb::new(0.17, 0.21, 0.31)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(1.75, 1.32, 0.92)),
+        light("sky", LightKind::Ambient, Rgb::new(0.15, 0.20, 0.32)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.5, 1.85, 1.20)),
     ]
 }
 
