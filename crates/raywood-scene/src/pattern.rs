@@ -114,7 +114,7 @@ fn masonry(base: Rgb, p: Vec3, length: f32, height: f32, joint: f32) -> Rgb {
     let margin = (from_edge(along) * length).min(from_edge(course) * height);
 
     let (i, j) = (block as i32, row as i32);
-    let tone = 0.90 + 0.20 * cell_value(i, j, 0, 1);
+    let tone = 0.86 + 0.26 * cell_value(i, j, 0, 1);
     let warmth = 0.03 * (cell_value(i, j, 0, 2) - 0.5);
     let grain = 1.0 + 0.10 * fractal3(p * 2.5, 3, 3);
     let color = (tone * grain) * Rgb::new(base.x * (1.0 + warmth), base.y, base.z * (1.0 - warmth));

@@ -85,7 +85,7 @@ pub(super) fn materials() -> Vec<Material> {
         ),
         matt(
             "wall",
-            Rgb::new(0.66, 0.60, 0.51),
+            Rgb::new(0.69, 0.60, 0.48),
             Pattern::Masonry { length: 0.88, height: 0.42, joint: 0.012 },
         ),
         matt(
@@ -95,13 +95,13 @@ pub(super) fn materials() -> Vec<Material> {
         ),
         matt(
             "stone",
-            Rgb::new(0.72, 0.67, 0.58),
-            Pattern::Marble { vein: Rgb::new(0.55, 0.49, 0.40), size: 0.6 },
+            Rgb::new(0.75, 0.67, 0.545),
+            Pattern::Marble { vein: Rgb::new(0.58, 0.49, 0.37), size: 0.6 },
         ),
         polished(
             "shaft",
-            Rgb::new(0.74, 0.69, 0.61),
-            Pattern::Marble { vein: Rgb::new(0.46, 0.38, 0.30), size: 0.55 },
+            Rgb::new(0.77, 0.695, 0.585),
+            Pattern::Marble { vein: Rgb::new(0.50, 0.38, 0.28), size: 0.55 },
             0.0,
         ),
         polished(

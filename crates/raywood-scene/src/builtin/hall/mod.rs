@@ -45,7 +45,7 @@ fn build(values: &Values) -> Scene {
         cameras: cameras(),
         background: Background {
             zenith: Rgb::new(0.00, 0.28, 0.80),
-            horizon: Rgb::new(0.93, 0.84, 0.66),
+            horizon: Rgb::new(1.0, 0.88, 0.68),
             nadir: Rgb::new(0.20, 0.30, 0.36),
         },
         ..Scene::default()
@@ -96,7 +96,7 @@ fn lights() -> Vec<Light> {
     let sun = Vec3::new(-0.80, -0.45, -0.40).normalize_or_zero();
     let window_light = Vec3::new(0.84, -0.46, -0.28).normalize_or_zero();
     vec![
-        light("sky", LightKind::Ambient, Rgb::new(0.105, 0.125, 0.175)),
+        light("sky", LightKind::Ambient, Rgb::new(0.115, 0.125, 0.155)),
         light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.7, 2.0, 1.22)),
         // The blue of the sky comes in through the windows on the side away from the sun.
         light(

@@ -72,11 +72,15 @@ fn add_bays(mesh: &mut MeshBuilder, detail: usize) {
         top: AISLE_TOP,
         thickness: OUTER_THICKNESS,
     };
-    let mut nave_wall = arcade.build(segments);
-    nave_wall.add_part(&clerestory.build(segments));
-    let outer_wall = outer.build(segments);
-    let nave_trim = nave_wall_trim(segments, detail);
-    let window_trim = window_trim(segments, detail);
+    let mut nave_wall = arcade.faces(segments);
+    nave_wall.add_part(&clerestory.faces(segments));
+    let outer_wall = outer.faces(segments);
+    // Courses of blocks would run askew over the inside of an arch: it is of plain stone, like the mouldings.
+    let mut nave_trim = nave_wall_trim(segments, detail);
+    nave_trim.add_part(&arcade.reveal(segments));
+    nave_trim.add_part(&clerestory.reveal(segments));
+    let mut window_trim = window_trim(segments, detail);
+    window_trim.add_part(&outer.reveal(segments));
     let nave_vault = groin_vault(&NAVE_VAULT, 2 * segments);
     let aisle_vault = groin_vault(&AISLE_VAULT, segments);
     let nave_stars = stars(&NAVE_VAULT, 0.52);
@@ -280,9 +284,13 @@ fn add_cornices(mesh: &mut MeshBuilder) {
             let towards_nave = x < PILLAR_X;
             // The path's right-hand side is where the moulding stands out.
             let away = (side < 0.0) == towards_nave;
-            let (from, to) = if away { (FIRST_Z, LAST_Z) } else { (LAST_Z, FIRST_Z) };
-            let path = [from, to]
-                .map(|z| PathPoint { position: Vec3::new(side * x, 0.0, z), up: Vec3::Y });
+            // Cut at the pillars: slivers as long as the nave would cost precision.
+            let mut path: Vec<_> = pillar_rows()
+                .map(|z| PathPoint { position: Vec3::new(side * x, 0.0, z), up: Vec3::Y })
+                .collect();
+            if !away {
+                path.reverse();
+            }
             mesh.add(&sweep(&section, &path, false), &Placement::IDENTITY, m::STONE);
         }
     }
@@ -305,10 +313,10 @@ fn add_end_walls(mesh: &mut MeshBuilder, detail: usize) {
     };
     // The lower half of the round window is the upper one upside down; the wall goes on above.
     let half = half_rose.build(segments);
-    let flip = |v: Vec3| Vec3::new(-v.x, -v.y, v.z);
+    let flip = |v: &Vec3| Vec3::new(-v.x, -v.y, v.z);
     let flipped = Part {
-        positions: half.positions.iter().map(|&p| flip(p)).collect(),
-        normals: half.normals.iter().map(|&n| flip(n)).collect(),
+        positions: half.positions.iter().map(flip).collect(),
+        normals: half.normals.iter().map(flip).collect(),
         triangles: half.triangles.clone(),
     };
     let rose_at = Placement::at(Vec3::new(0.0, ROSE.0, 0.0));

@@ -65,15 +65,27 @@ pub struct ArchedWall {
 }
 
 impl ArchedWall {
-    /// The surface, with the head cut into `segments`.
+    /// Faces and reveal together, with the head cut into `segments`.
     pub fn build(&self, segments: usize) -> Part {
+        let mut part = self.faces(segments);
+        part.add_part(&self.reveal(segments));
+        part
+    }
+
+    /// The faces towards +z and -z.
+    pub fn faces(&self, segments: usize) -> Part {
         let mut part = Part::default();
         let z = 0.5 * self.thickness;
         for front in [true, false] {
             self.add_face(&mut part, segments, if front { z } else { -z }, front);
         }
+        part
+    }
 
-        // The inside of the opening, facing its middle.
+    /// The inside of the opening, through the wall.
+    pub fn reveal(&self, segments: usize) -> Part {
+        let mut part = Part::default();
+        let z = 0.5 * self.thickness;
         let path = arch_path(&self.arch, self.sill, segments);
         part.add_grid(Cells::open(1), Cells::open(path.len() - 1), |i, j| {
             path[j].position + Vec3::new(0.0, 0.0, if i == 0 { -z } else { z })
