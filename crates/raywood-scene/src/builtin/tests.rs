@@ -194,7 +194,7 @@ fn refusals_are_one_line_and_say_what_exists() {
         ("whitted?n=1", "the scene 'whitted' has no parameters, but 'n' is given"),
         (
             "terrain?n=0",
-            "the parameter 'n' of the scene 'terrain' is '0', but must be a whole number from 1 to 8192",
+            "the parameter 'n' of the scene 'terrain' is '0', but must be a whole number from 1 to 4096",
         ),
         (
             "sphereflake?depth=1e9",
@@ -202,7 +202,7 @@ fn refusals_are_one_line_and_say_what_exists() {
         ),
         (
             "terrain?n",
-            "the parameter 'n' of the scene 'terrain' is '', but must be a whole number from 1 to 8192",
+            "the parameter 'n' of the scene 'terrain' is '', but must be a whole number from 1 to 4096",
         ),
         ("terrain?n=4&n=5", "the parameter 'n' of the scene 'terrain' is given more than once"),
     ];

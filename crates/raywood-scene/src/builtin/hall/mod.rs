@@ -107,6 +107,7 @@ fn lights() -> Vec<Light> {
         // The sun's patches on the floor send light up: lamps that shine only upwards stand in for them.
         light("bounce near", up(Vec3::new(0.9, 0.02, 4.2)), Rgb::new(20.0, 14.6, 9.2)),
         light("bounce far", up(Vec3::new(0.8, 0.02, -13.0)), Rgb::new(20.0, 14.6, 9.0)),
+        light("bounce left", up(Vec3::new(-5.3, 0.02, -1.0)), Rgb::new(5.2, 4.1, 3.0)),
         // Daylight from behind the eye, and through the door.
         light(
             "front",

@@ -20,7 +20,7 @@ pub(super) const ENTRY: Builtin = Builtin {
             description: "cells along each side: 512 makes 524,290 triangles, 2048 makes 8,388,610",
             default: 512,
             min: 1,
-            max: 8192,
+            max: 4096,
         },
         Parameter {
             name: "seed",
