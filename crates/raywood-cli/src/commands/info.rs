@@ -1,0 +1,187 @@
+//! `raywood info`: what is in a scene, and what its tree is like.
+
+use raywood::{Geometry, TreeStats};
+use raywood_render::PreparedScene;
+use raywood_scene::{LightKind, Material, Rgb, Scene};
+use serde_json::{Value, json};
+
+use super::thread_pool;
+use crate::failure::Failure;
+use crate::print::{self, thousands};
+use crate::progress_bar::during_step;
+use crate::scene_source::{self, Loaded};
+
+/// Tell what a scene holds, and what its tree is like.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Model file, or built-in scene such as builtin:whitted
+    ///
+    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
+    #[arg(default_value = "builtin:hall")]
+    scene: String,
+
+    /// Refuse what would otherwise be mended with a warning
+    #[arg(long)]
+    strict: bool,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let pool = thread_pool(None)?;
+    let loaded =
+        during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
+    loaded.print_warnings();
+    let prepared =
+        during_step("building the tree", || pool.install(|| PreparedScene::new(&loaded.scene)))
+            .map_err(Failure::bad_input)?;
+    let stats = prepared.bvh().stats();
+    if args.json {
+        print::json(&as_json(&loaded, &stats))
+    } else {
+        print::result(&as_text(&loaded, &stats))
+    }
+}
+
+fn as_text(Loaded { scene, time }: &Loaded, stats: &TreeStats) -> String {
+    let mesh = &scene.mesh;
+    let bounds = scene.bounds();
+    let point = |p: raywood::Vec3| format!("({}, {}, {})", p.x, p.y, p.z);
+    let mut text = format!("{}: loaded in {:.3} s\n", scene.name, time.as_secs_f64());
+    let mut line = |name: &str, value: &str| text += &format!("{name:<11}{value}\n");
+
+    line("triangles", &thousands(mesh.triangles.len() as u64));
+    line("vertices", &thousands(mesh.triangles.positions().len() as u64));
+    if scene.spheres.len() > 0 {
+        line("spheres", &thousands(scene.spheres.len() as u64));
+    }
+    let given = [(!mesh.normals.is_empty(), "normals"), (!mesh.colors.is_empty(), "colours")];
+    let given: Vec<_> = given.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
+    line(
+        "per vertex",
+        if given.is_empty() { "positions only".into() } else { given.join(", ") }.as_str(),
+    );
+    if bounds.is_empty() {
+        line("bounds", "empty");
+    } else {
+        line("bounds", &format!("{} to {}", point(bounds.min), point(bounds.max)));
+    }
+    line("tree", &stats.to_string());
+
+    line("materials", &scene.materials.len().to_string());
+    for material in &scene.materials {
+        line("", &format!("{}: {}", name_or(&material.name), describe(material)));
+    }
+    line("lights", &scene.lights.len().to_string());
+    for light in &scene.lights {
+        line(
+            "",
+            &format!(
+                "{}: {}, intensity {}",
+                name_or(&light.name),
+                light_kind(&light.kind),
+                point(light.intensity)
+            ),
+        );
+    }
+    line("cameras", &scene.cameras.len().to_string());
+    for camera in &scene.cameras {
+        let (eye, target) = (point(camera.eye), point(camera.target));
+        line(
+            "",
+            &format!("{}: from {eye} to {target}, {} degrees", name_or(&camera.name), camera.fov_y),
+        );
+    }
+    text
+}
+
+fn name_or(name: &str) -> &str {
+    if name.is_empty() { "(unnamed)" } else { name }
+}
+
+fn light_kind(kind: &LightKind) -> &'static str {
+    match kind {
+        LightKind::Point { .. } => "point",
+        LightKind::Spot { .. } => "spot",
+        LightKind::Directional { .. } => "directional",
+        LightKind::Ambient => "ambient",
+    }
+}
+
+/// A material in a few words.
+fn describe(material: &Material) -> String {
+    let color = |c: Rgb| format!("({:.2}, {:.2}, {:.2})", c.x, c.y, c.z);
+    let mut parts = vec![];
+    let mut part = |name: &str, c: Rgb| {
+        if c != Rgb::ZERO {
+            parts.push(format!("{name} {}", color(c)));
+        }
+    };
+    part("diffuse", material.diffuse);
+    part("mirror", material.mirror);
+    part("transmission", material.transmission);
+    part("absorption", material.absorption);
+    part("emission", material.emission);
+    if material.transmission != Rgb::ZERO {
+        parts.push(format!("ior {}", material.ior));
+    }
+    if material.specular != Rgb::ZERO {
+        parts.push(format!(
+            "highlight {} exponent {:.0}",
+            color(material.specular),
+            material.shininess
+        ));
+    }
+    if parts.is_empty() { "black".to_owned() } else { parts.join(", ") }
+}
+
+fn as_json(Loaded { scene, time }: &Loaded, stats: &TreeStats) -> Value {
+    let bounds = scene.bounds();
+    json!({
+        "scene": scene.name,
+        "load_seconds": time.as_secs_f64(),
+        "triangles": scene.mesh.triangles.len(),
+        "vertices": scene.mesh.triangles.positions().len(),
+        "spheres": scene.spheres.len(),
+        "bounds": if bounds.is_empty() { Value::Null } else {
+            json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
+        },
+        "materials": materials(scene),
+        "lights": scene.lights.iter().map(|light| json!({
+            "name": light.name, "kind": light_kind(&light.kind), "intensity": light.intensity.to_array(),
+        })).collect::<Vec<_>>(),
+        "cameras": scene.cameras.iter().map(|camera| json!({
+            "name": camera.name, "eye": camera.eye.to_array(), "target": camera.target.to_array(),
+            "up": camera.up.to_array(), "fov_y_degrees": camera.fov_y,
+        })).collect::<Vec<_>>(),
+        "warnings": scene.warnings,
+        "tree": tree(stats),
+    })
+}
+
+fn materials(scene: &Scene) -> Vec<Value> {
+    let one = |m: &Material| {
+        json!({
+            "name": m.name, "diffuse": m.diffuse.to_array(), "mirror": m.mirror.to_array(),
+            "transmission": m.transmission.to_array(), "ior": m.ior, "absorption": m.absorption.to_array(),
+            "specular": m.specular.to_array(), "shininess": m.shininess, "emission": m.emission.to_array(),
+        })
+    };
+    scene.materials.iter().map(one).collect()
+}
+
+/// Statistics of a tree, as every command prints them for machines.
+pub(crate) fn tree(stats: &TreeStats) -> Value {
+    json!({
+        "primitives": stats.primitives,
+        "nodes": stats.nodes,
+        "leaves": stats.leaves,
+        "depth": stats.depth,
+        "mean_leaf_primitives": stats.mean_leaf_primitives,
+        "max_leaf_primitives": stats.max_leaf_primitives,
+        "bytes": stats.bytes,
+        "q": stats.q,
+    })
+}

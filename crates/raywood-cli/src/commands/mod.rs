@@ -1,0 +1,36 @@
+//! The subcommands, one per file. To add one, write its file and name it here.
+
+mod info;
+mod render;
+mod scenes;
+
+use clap::Subcommand;
+
+use crate::failure::Failure;
+
+/// What to do.
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    Render(render::Args),
+    Info(info::Args),
+    Scenes(scenes::Args),
+}
+
+impl Command {
+    /// Does it.
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Render(args) => render::run(args),
+            Self::Info(args) => info::run(args),
+            Self::Scenes(args) => scenes::run(args),
+        }
+    }
+}
+
+/// The threads that all work of a command runs on.
+fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()
+        .map_err(|error| Failure::while_running(format!("cannot start the threads: {error}")))
+}

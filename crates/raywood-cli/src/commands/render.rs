@@ -1,0 +1,290 @@
+//! `raywood render`: a scene in, a picture out.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use raywood::TreeStats;
+use raywood_render::{
+    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, default_view, render,
+    write_png,
+};
+use raywood_scene::{Light, LightKind, Rgb, Scene, ambient};
+use serde_json::{Value, json};
+
+use super::{info, thread_pool};
+use crate::failure::Failure;
+use crate::output_file::OutputFile;
+use crate::parse::{Point, PointLight, Size, field_of_view};
+use crate::print::{self, thousands};
+use crate::progress_bar::{during_rendering, during_step};
+use crate::scene_source::{self, Loaded};
+
+/// Render a model file or a built-in scene to a PNG picture.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Model file, or built-in scene such as builtin:whitted
+    ///
+    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
+    #[arg(default_value = "builtin:hall", hide_default_value = true)]
+    scene: String,
+
+    /// The picture [default: render.png]
+    #[arg(
+        short,
+        long,
+        value_name = "FILE.png",
+        default_value = "render.png",
+        hide_default_value = true
+    )]
+    output: PathBuf,
+
+    /// Width and height in pixels
+    #[arg(short, long, value_name = "WxH", default_value = "1280x800")]
+    size: Size,
+
+    /// Rays per pixel, for smooth edges
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 4)]
+    samples: u32,
+
+    /// Most reflections and refractions
+    ///
+    /// How often light may be mirrored or refracted on its way to the eye.
+    #[arg(long, value_name = "N", default_value_t = RenderOptions::default().max_depth)]
+    depth: u32,
+
+    /// Threads to use, else all cores
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+
+    /// Where the eye is
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    eye: Option<Point>,
+
+    /// The point in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    target: Option<Point>,
+
+    /// The direction that is up
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    up: Option<Point>,
+
+    /// Field of view from bottom to top
+    #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
+    fov: Option<f32>,
+
+    /// The scene's camera to use
+    ///
+    /// By its number, from 1, or its name; `raywood info` lists them. Else it is the first.
+    #[arg(long, value_name = "N|NAME")]
+    camera: Option<String>,
+
+    /// Point light; may be repeated
+    ///
+    /// Takes the place of the scene's lights. The strength S is relative: 1, the default, fully lights a surface as far away as the middle of the picture.
+    #[arg(long, value_name = "X,Y,Z[,S]", allow_hyphen_values = true)]
+    light: Vec<PointLight>,
+
+    /// Transparent things cast black shadows
+    ///
+    /// Otherwise light passes straight through them to what lies behind, weakened and coloured by what they absorb.
+    #[arg(long)]
+    opaque_shadows: bool,
+
+    /// Refuse what is otherwise mended
+    ///
+    /// Such as vertices that are not a number, which are otherwise dropped with the triangles that use them.
+    #[arg(long)]
+    strict: bool,
+
+    /// Print the statistics as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was done and how long it took.
+struct Report<'a> {
+    args: &'a Args,
+    scene: &'a Scene,
+    tree: TreeStats,
+    load: Duration,
+    build: Duration,
+    render: RenderStats,
+    write: Duration,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    // Say what is wrong with the request before any work is done for it.
+    let options = RenderOptions {
+        width: args.size.width,
+        height: args.size.height,
+        samples: args.samples,
+        max_depth: args.depth,
+        opaque_shadows: args.opaque_shadows,
+        ..RenderOptions::default()
+    };
+    options.validate().map_err(Failure::bad_input)?;
+    let output = output_file(args)?;
+
+    let pool = thread_pool(args.threads.map(usize::from))?;
+    let loaded =
+        during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
+    loaded.print_warnings();
+    let Loaded { scene, time: load } = loaded;
+    let started = Instant::now();
+    let prepared = during_step("building the tree", || pool.install(|| PreparedScene::new(&scene)))
+        .map_err(Failure::bad_input)?;
+    let build = started.elapsed();
+
+    let View { camera, lights } = view(args, &scene, &prepared)?;
+    let progress = Progress::new();
+    let (image, stats) = during_rendering(&progress, || {
+        pool.install(|| render(&prepared, &camera, &lights, &options, &progress))
+    })
+    .map_err(|error| match error {
+        RenderError::OutOfMemory { .. } => Failure::while_running(error),
+        error => Failure::bad_input(error),
+    })?;
+
+    let started = Instant::now();
+    output.write(|writer| write_png(&image, writer))?;
+    let write = started.elapsed();
+
+    let tree = prepared.bvh().stats();
+    let report = Report { args, scene: &scene, tree, load, build, render: stats, write };
+    if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
+}
+
+/// The picture's file, known to be writable.
+fn output_file(args: &Args) -> Result<OutputFile, Failure> {
+    let path = &args.output;
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        let message =
+            format!("{}: pictures are written as PNG: the name must end in .png", path.display());
+        return Err(Failure::BadInput(message));
+    }
+    OutputFile::new(path)
+}
+
+/// The camera and lights: the scene's or default ones, as far as the command line does not say otherwise.
+fn view(args: &Args, scene: &Scene, prepared: &PreparedScene<'_>) -> Result<View, Failure> {
+    let aspect = args.size.width as f32 / args.size.height as f32;
+    let mut view = default_view(prepared, aspect);
+    if let Some(wanted) = &args.camera {
+        let by_number = wanted
+            .parse::<usize>()
+            .ok()
+            .and_then(|number| scene.cameras.get(number.checked_sub(1)?));
+        let camera =
+            by_number.or_else(|| scene.cameras.iter().find(|camera| camera.name == *wanted));
+        view.camera = camera.cloned().ok_or_else(|| no_such_camera(wanted, scene))?;
+    }
+    let camera = &mut view.camera;
+    let or_given =
+        |value: raywood::Vec3, given: Option<Point>| given.map_or(value, |point| point.0);
+    camera.eye = or_given(camera.eye, args.eye);
+    camera.target = or_given(camera.target, args.target);
+    camera.up = or_given(camera.up, args.up);
+    camera.fov_y = args.fov.unwrap_or(camera.fov_y);
+
+    if !args.light.is_empty() {
+        let point_light = |light: &PointLight| {
+            let to_target = camera.target - light.position;
+            Light {
+                name: String::new(),
+                kind: LightKind::Point { position: light.position },
+                intensity: Rgb::splat(light.strength * to_target.dot(to_target)),
+            }
+        };
+        view.lights = args.light.iter().map(point_light).chain([ambient(0.15)]).collect();
+    }
+    Ok(view)
+}
+
+fn no_such_camera(wanted: &str, scene: &Scene) -> Failure {
+    let known: Vec<_> = (1..)
+        .zip(&scene.cameras)
+        .map(|(number, camera)| format!("{number} {}", camera.name))
+        .collect();
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    Failure::BadInput(format!("{}: has no camera `{wanted}`; its cameras: {known}", scene.name))
+}
+
+impl Report<'_> {
+    fn as_text(&self) -> String {
+        let Self { args, scene, tree, load, build, render, write } = self;
+        let rays = render.rays;
+        let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
+        let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
+        let mut line = |name: &str, value: String| text += &format!("  {name:<8}{value}\n");
+
+        let spheres = match scene.spheres.as_slice().len() {
+            0 => String::new(),
+            n => format!(", {} spheres", thousands(n as u64)),
+        };
+        let triangles = thousands(scene.mesh.triangles.triangles().len() as u64);
+        line("load", format!("{}   {triangles} triangles{spheres}", seconds(load)));
+        let megabytes = tree.bytes as f64 / 1e6;
+        let nodes = thousands(tree.nodes as u64);
+        line(
+            "build",
+            format!("{}   {nodes} nodes, depth {}, {megabytes:.1} MB", seconds(build), tree.depth),
+        );
+        let [primary, shadow, reflection, refraction] =
+            [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
+        line(
+            "render",
+            format!(
+                "{}   {:.1} million rays/s on {} threads",
+                seconds(&render.elapsed),
+                render.million_rays_per_second(),
+                render.threads
+            ),
+        );
+        line("write", seconds(write));
+        line(
+            "rays",
+            format!(
+                "{primary} primary, {shadow} shadow, {reflection} reflection, {refraction} refraction"
+            ),
+        );
+        text
+    }
+
+    /// The picture in a few words.
+    fn what(&self) -> String {
+        let Args { scene, size: Size { width, height }, samples, .. } = self.args;
+        format!("{scene} at {width}x{height}, {samples} samples per pixel")
+    }
+
+    fn as_json(&self) -> Value {
+        let Self { args, scene, tree, load, build, render, write } = self;
+        let rays = render.rays;
+        json!({
+            "scene": args.scene,
+            "output": args.output.display().to_string(),
+            "width": args.size.width,
+            "height": args.size.height,
+            "samples": args.samples,
+            "depth": args.depth,
+            "threads": render.threads,
+            "triangles": scene.mesh.triangles.triangles().len(),
+            "spheres": scene.spheres.as_slice().len(),
+            "warnings": scene.warnings,
+            "seconds": {
+                "load": load.as_secs_f64(),
+                "build": build.as_secs_f64(),
+                "render": render.elapsed.as_secs_f64(),
+                "write": write.as_secs_f64(),
+            },
+            "rays": {
+                "primary": rays.primary,
+                "shadow": rays.shadow,
+                "reflection": rays.reflection,
+                "refraction": rays.refraction,
+                "total": rays.total(),
+            },
+            "million_rays_per_second": render.million_rays_per_second(),
+            "tree": info::tree(tree),
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! Ctrl-C: clean up and end at once, with exit code 130.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The exit code of a program that Ctrl-C stopped, by convention 128 plus the signal's number.
+const EXIT_CODE: i32 = 130;
+
+/// The unfinished file to delete, if one is being written.
+static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+fn unfinished() -> MutexGuard<'static, Option<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on Ctrl-C ends the program, whatever it is doing.
+pub(crate) fn install() {
+    let installed = ctrlc::set_handler(|| {
+        // Holding the lock until the end keeps the file from being finished meanwhile.
+        let unfinished = unfinished();
+        if let Some(path) = unfinished.as_deref() {
+            let _ = std::fs::remove_file(path);
+        }
+        std::process::exit(EXIT_CODE);
+    });
+    // Without a handler Ctrl-C still ends the program, only less tidily.
+    drop(installed);
+}
+
+/// While this lives, Ctrl-C deletes a file.
+pub(crate) struct DeleteOnInterrupt(());
+
+impl DeleteOnInterrupt {
+    /// Names the file, before it is made.
+    pub(crate) fn new(path: &Path) -> Self {
+        *unfinished() = Some(path.to_owned());
+        Self(())
+    }
+
+    /// Runs the step that makes the file whole, undisturbed by Ctrl-C; after it nothing is deleted any more.
+    pub(crate) fn finish<T>(self, step: impl FnOnce() -> T) -> T {
+        let mut unfinished = unfinished();
+        let result = step();
+        *unfinished = None;
+        result
+    }
+}
+
+impl Drop for DeleteOnInterrupt {
+    fn drop(&mut self) {
+        *unfinished() = None;
+    }
+}

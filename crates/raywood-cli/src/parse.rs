@@ -1,0 +1,103 @@
+//! Values on the command line: points, sizes, lights.
+
+use std::str::FromStr;
+
+use raywood::Vec3;
+
+/// A point or direction, `X,Y,Z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point(pub(crate) Vec3);
+
+impl FromStr for Point {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text)?[..] {
+            [x, y, z] => Ok(Self(Vec3::new(x, y, z))),
+            _ => Err("expected three numbers, as in 1,2.5,-3".to_owned()),
+        }
+    }
+}
+
+/// A point light, `X,Y,Z` or `X,Y,Z,STRENGTH`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PointLight {
+    pub(crate) position: Vec3,
+    pub(crate) strength: f32,
+}
+
+impl FromStr for PointLight {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match numbers(text)?[..] {
+            [x, y, z] => Ok(Self { position: Vec3::new(x, y, z), strength: 1.0 }),
+            [x, y, z, strength] if strength >= 0.0 => {
+                Ok(Self { position: Vec3::new(x, y, z), strength })
+            }
+            _ => Err("expected a position and perhaps a strength, as in 1,2.5,-3 or 1,2.5,-3,0.5"
+                .to_owned()),
+        }
+    }
+}
+
+/// Finite numbers between commas.
+fn numbers(text: &str) -> Result<Vec<f32>, String> {
+    let number = |part: &str| match part.trim().parse::<f32>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{part}` is not a number")),
+    };
+    text.split(',').map(number).collect()
+}
+
+/// The size of a picture in pixels, `WIDTHxHEIGHT`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let complaint = || "expected width and height in pixels, as in 1280x800".to_owned();
+        let (width, height) = text.split_once(['x', 'X']).ok_or_else(complaint)?;
+        match (width.trim().parse(), height.trim().parse()) {
+            (Ok(width), Ok(height)) => Ok(Self { width, height }),
+            _ => Err(complaint()),
+        }
+    }
+}
+
+/// A vertical field of view in degrees, between 0 and 180.
+pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
+        _ => Err("expected degrees above 0 and below 180".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_sizes_and_lights() {
+        assert_eq!("1,-2.5, 3e2".parse(), Ok(Point(Vec3::new(1.0, -2.5, 300.0))));
+        for bad in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,2,inf", "1 2 3"] {
+            assert!(bad.parse::<Point>().is_err(), "{bad}");
+        }
+        assert_eq!("640x400".parse(), Ok(Size { width: 640, height: 400 }));
+        for bad in ["640", "x", "640x", "-1x2", "1.5x2", "640x400x3", "99999999999x1"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+        assert_eq!(
+            "1,2,3,0.5".parse(),
+            Ok(PointLight { position: Vec3::new(1.0, 2.0, 3.0), strength: 0.5 })
+        );
+        assert!("1,2,3,-1".parse::<PointLight>().is_err());
+        assert_eq!(field_of_view("35"), Ok(35.0));
+        assert!(["0", "180", "nan", "-5", "wide"].iter().all(|bad| field_of_view(bad).is_err()));
+    }
+}

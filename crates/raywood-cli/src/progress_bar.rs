@@ -1,0 +1,54 @@
+//! What long work shows on a terminal: what it is doing, how far it is, how long it will take. Silent elsewhere.
+
+use std::io::{IsTerminal, stderr};
+use std::thread;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use raywood_render::Progress;
+
+/// How often the line is drawn anew.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// Runs a step of unknown length while its name is shown.
+pub(crate) fn during_step<T>(name: &str, step: impl FnOnce() -> T) -> T {
+    let line = new_line("{spinner} {msg} {elapsed}", None);
+    line.set_message(name.to_owned());
+    line.enable_steady_tick(INTERVAL);
+    let result = step();
+    line.finish_and_clear();
+    result
+}
+
+/// Runs a rendering while a bar shows how far it is.
+pub(crate) fn during_rendering<T: Send>(
+    progress: &Progress,
+    rendering: impl FnOnce() -> T + Send,
+) -> T {
+    if !stderr().is_terminal() {
+        return rendering();
+    }
+    let bar = new_line("rendering [{wide_bar}] {percent}% {eta} left", Some(0));
+    thread::scope(|scope| {
+        let rendering = scope.spawn(rendering);
+        while !rendering.is_finished() {
+            bar.set_length(progress.pixels_total().max(1));
+            bar.set_position(progress.pixels_done());
+            thread::sleep(INTERVAL);
+        }
+        bar.finish_and_clear();
+        rendering.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// A line on standard error, hidden where that is no terminal.
+fn new_line(template: &str, length: Option<u64>) -> ProgressBar {
+    let target = if stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let style =
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(length, target).with_style(style.progress_chars("=> "))
+}

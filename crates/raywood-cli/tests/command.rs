@@ -1,0 +1,248 @@
+//! The command as a user meets it: what it writes, says and exits with.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use raywood_testkit::image::Picture;
+use serde_json::Value;
+
+/// The command, started in a folder.
+fn raywood(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_raywood"));
+    command.current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+/// Runs the command with arguments separated by spaces.
+fn run(folder: &Path, arguments: &str) -> Output {
+    raywood(folder).args(arguments.split_whitespace()).output().expect("the command starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("the command ends by itself")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+fn json(output: &Output) -> Value {
+    assert_eq!(code(output), 0, "{}", stderr(output));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// A new, empty folder.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a folder");
+    path
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("text")).collect()
+}
+
+/// A small model: one triangle.
+fn write_triangle(folder: &Path) {
+    fs::write(folder.join("triangle.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a file");
+}
+
+#[test]
+fn every_builtin_renders_to_a_picture() {
+    let folder = folder("builtins");
+    let list = json(&run(&folder, "scenes --json"));
+    let scenes = list.as_array().expect("a list");
+    let names: Vec<_> = scenes.iter().map(|s| s["name"].as_str().expect("a name")).collect();
+    assert!(names.len() >= 4 && names.contains(&"builtin:whitted"), "{names:?}");
+    for name in names {
+        let output = run(&folder, &format!("render {name} -o out.png --size 96x60 -n 1 --json"));
+        let report = json(&output);
+        assert_eq!(stderr(&output), "", "{name}: silent when piped");
+        assert_eq!(report["rays"]["primary"], 96 * 60);
+        assert!(report["tree"]["nodes"].as_u64().expect("a number") > 1);
+        let picture = Picture::read(&folder.join("out.png")).expect("a PNG");
+        assert_eq!((picture.width, picture.height), (96, 60));
+        assert!(picture.colors() > 200, "{name}: only {} colours", picture.colors());
+    }
+}
+
+#[test]
+fn a_report_names_every_phase_and_kind_of_ray() {
+    let folder = folder("report");
+    let output = run(&folder, "render builtin:whitted --size 64x40");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    for word in ["render.png", "load", "build", "render", "write", "MB", "rays/s", "threads"] {
+        assert!(text.contains(word), "no {word} in {text}");
+    }
+    for kind in ["primary", "shadow", "reflection", "refraction"] {
+        assert!(text.contains(kind), "no {kind} in {text}");
+    }
+    assert_eq!(files(&folder), ["render.png"]);
+}
+
+#[test]
+fn the_camera_and_lights_can_be_overridden() {
+    let folder = folder("override");
+    write_triangle(&folder);
+    let picture = |name: &str, options: &str| {
+        let arguments = format!("render triangle.obj -o {name}.png --size 64x40 -n 1 {options}");
+        let output = run(&folder, &arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        Picture::read(&folder.join(format!("{name}.png"))).expect("a PNG")
+    };
+    let front = picture("front", "--eye 0.3,0.3,2 --target 0.3,0.3,0");
+    assert_eq!(front, picture("again", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --threads 3"));
+    assert_ne!(front, picture("moved", "--eye -0.3,0.3,2 --target 0.3,0.3,0"));
+    assert_ne!(front, picture("turned", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --up -1,0,0"));
+    assert_ne!(front, picture("wide", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --fov 80"));
+    assert_ne!(front, picture("lit", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --light 2,2,2"));
+}
+
+#[test]
+fn info_tells_what_a_scene_holds() {
+    let folder = folder("info");
+    write_triangle(&folder);
+    let output = run(&folder, "info triangle.obj");
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    for word in ["triangles  1\n", "(0, 0, 0) to (1, 1, 0)", "1 nodes", "materials"] {
+        assert!(text.contains(word), "no {word} in {text}");
+    }
+    let report = json(&run(&folder, "info triangle.obj --json"));
+    assert_eq!(report["triangles"], 1);
+    assert_eq!(report["bounds"]["max"], serde_json::json!([1.0, 1.0, 0.0]));
+}
+
+#[test]
+fn bad_input_is_exit_code_2_and_one_clear_line() {
+    let folder = folder("bad");
+    write_triangle(&folder);
+    fs::write(folder.join("broken.obj"), "v 0 0 0\nf 1 2 3\n").expect("a file");
+    fs::write(folder.join("empty.ply"), "").expect("a file");
+    fs::write(folder.join("model.xyz"), "what is this").expect("a file");
+    fs::create_dir(folder.join("directory.obj")).expect("a folder");
+    fs::create_dir(folder.join("directory.png")).expect("a folder");
+    for (arguments, expected) in [
+        ("render missing.obj", "missing.obj: no such file"),
+        ("render hall", "did you mean builtin:hall?"),
+        ("render builtin:hal", "hall"),
+        ("render builtin:terrain?m=5", "n"),
+        ("render builtin:terrain?n=x", "x"),
+        ("render broken.obj", "broken.obj:2: "),
+        ("render empty.ply", "empty.ply: is empty"),
+        ("render model.xyz", ".obj"),
+        ("render directory.obj", "directory"),
+        ("render triangle.obj -o picture.jpg", ".png"),
+        ("render triangle.obj -o directory.png", "directory"),
+        ("render triangle.obj -o nowhere/picture.png", "there is no folder nowhere"),
+        ("render triangle.obj --size 0x5", "0x5"),
+        ("render triangle.obj --size 1000000x1000000", "1000000x1000000"),
+        ("render triangle.obj --samples 0", "samples"),
+        ("render triangle.obj --depth 1000", "depth"),
+        ("render triangle.obj --eye 0,0,0 --target 0,0,0", "eye"),
+        ("render triangle.obj --camera 3", "none"),
+        ("info missing.glb", "missing.glb: no such file"),
+    ] {
+        let output = run(&folder, arguments);
+        let said = stderr(&output);
+        assert_eq!(code(&output), 2, "{arguments}: {said}");
+        let clear = said.starts_with("raywood: error: ") && said.contains(expected);
+        assert!(clear && said.lines().count() == 1, "{arguments}: {said}");
+        assert_eq!(stdout(&output), "", "{arguments}");
+    }
+
+    // Wrong usage is answered by the usage.
+    for arguments in [
+        "",
+        "paint",
+        "render --size big triangle.obj",
+        "render --eye 1,2 triangle.obj",
+        "render --threads 0",
+    ] {
+        let output = run(&folder, arguments);
+        let said = stderr(&output);
+        assert_eq!(code(&output), 2, "{arguments}: {said}");
+        assert!(said.contains("Usage: raywood") || said.contains("--help"), "{arguments}: {said}");
+    }
+    let left = files(&folder);
+    assert!(!left.iter().any(|name| name.ends_with(".tmp")), "{left:?}");
+}
+
+#[test]
+fn an_unwritable_place_is_refused_before_any_work() {
+    let folder = folder("unwritable");
+    let started = Instant::now();
+    let output = run(&folder, "render builtin:terrain?n=4096 -o nowhere/picture.png");
+    assert_eq!(code(&output), 2);
+    assert!(started.elapsed() < Duration::from_secs(1), "after {:?}", started.elapsed());
+}
+
+#[test]
+fn vertices_that_are_no_numbers_are_dropped_or_refused() {
+    let folder = folder("nan");
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n";
+    fs::write(folder.join("nan.obj"), text).expect("a file");
+    let mended = run(&folder, "render nan.obj --size 32x20 --json");
+    assert_eq!(json(&mended)["triangles"], 1);
+    assert!(stderr(&mended).starts_with("raywood: warning: nan.obj: "), "{}", stderr(&mended));
+    let refused = run(&folder, "render nan.obj --strict");
+    assert_eq!(code(&refused), 2, "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("nan.obj:4"), "{}", stderr(&refused));
+}
+
+#[test]
+fn help_fits_a_screen() {
+    let folder = folder("help");
+    for arguments in ["-h", "render -h", "info -h", "scenes -h"] {
+        let text = stdout(&run(&folder, arguments));
+        let lines = text.lines().count();
+        assert!((5..=24).contains(&lines), "{arguments} has {lines} lines:\n{text}");
+        let longest = text.lines().map(|line| line.chars().count()).max();
+        assert!(longest <= Some(80), "{arguments} has long lines:\n{text}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_who_leaves_is_no_error() {
+    let folder = folder("pipe");
+    let program = env!("CARGO_BIN_EXE_raywood");
+    let script = format!("'{program}' scenes | true; '{program}' info builtin:whitted | true");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(&folder).output();
+    assert_eq!(stderr(&output.expect("a shell starts")), "");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_it_within_a_second_and_leaves_nothing() {
+    let folder = folder("interrupt");
+    fs::write(folder.join("old.png"), "an old picture").expect("a file");
+    let arguments = "render builtin:whitted --samples 20000 -o old.png";
+    for delay in [100, 300, 1000] {
+        let mut child = raywood(&folder)
+            .args(arguments.split_whitespace())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the command starts");
+        std::thread::sleep(Duration::from_millis(delay));
+        assert_eq!(child.try_wait().expect("a child"), None, "it ended before it was stopped");
+        let stopped = Instant::now();
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(kill.expect("kill starts").success());
+        let status = child.wait().expect("it ends");
+        assert_eq!(status.code(), Some(130));
+        assert!(stopped.elapsed() < Duration::from_secs(1), "after {:?}", stopped.elapsed());
+        assert_eq!(files(&folder), ["old.png"]);
+    }
+    assert_eq!(fs::read(folder.join("old.png")).expect("a file"), b"an old picture");
+}
