@@ -29,4 +29,4 @@ pub use progress::Progress;
 pub use render::render;
 pub use sampling::PixelSamples;
 pub use stats::{RayCounts, RenderStats};
-pub use view::{Place, View, choose_camera, choose_lights, default_view};
+pub use view::{Setting, View, choose_camera, choose_lights, default_view};

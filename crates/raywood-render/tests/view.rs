@@ -5,7 +5,7 @@ mod common;
 use common::{camera, level, light, matte, scene};
 use raywood::{Aabb, TriangleMesh, Vec3};
 use raywood_render::{
-    Place, PreparedScene, Progress, RenderOptions, choose_camera, default_view, render,
+    PreparedScene, Progress, RenderOptions, Setting, choose_camera, default_view, render,
 };
 use raywood_scene::{LightKind, Scene};
 
@@ -50,7 +50,7 @@ fn a_closed_room_is_seen_and_lit_from_within() {
     for size in [0.01, 1.0, 1000.0] {
         let scene = scene(&room([3.0 * size, size, 2.0 * size]), &[], vec![matte(0.7)]);
         let prepared = PreparedScene::new(&scene).expect("a tree");
-        assert_eq!(Place::of(&prepared), Place::Inside);
+        assert_eq!(Setting::of(&prepared), Setting::Inside);
         let view = default_view(&prepared, 1.6);
         assert!(contains(&scene.bounds(), view.camera.eye));
         let mut points = 0;
@@ -78,7 +78,7 @@ fn a_stage_is_seen_through_its_opening() {
         walls.remove(open);
         let scene = scene(&walls, &[], vec![matte(0.7)]);
         let prepared = PreparedScene::new(&scene).expect("a tree");
-        assert_eq!(Place::of(&prepared), Place::Opening { towards });
+        assert_eq!(Setting::of(&prepared), Setting::Opening { towards });
         let camera = choose_camera(&prepared, 1.0);
         assert!((camera.eye - camera.target).normalize_or_zero().dot(towards) > 0.99);
     }
@@ -90,7 +90,7 @@ fn a_tray_open_to_the_sky_is_seen_from_outside() {
     walls.remove(1);
     let scene = scene(&walls, &[], vec![matte(0.7)]);
     let prepared = PreparedScene::new(&scene).expect("a tree");
-    assert_eq!(Place::of(&prepared), Place::Outside);
+    assert_eq!(Setting::of(&prepared), Setting::Outside);
     assert!(choose_camera(&prepared, 1.6).eye.y > 1.0);
 }
 
@@ -101,7 +101,7 @@ fn a_solid_thing_is_seen_from_outside() {
         room([1.0; 3]).into_iter().map(|([a, b, c, d], m)| ([d, c, b, a], m)).collect();
     let scene = scene(&walls, &[], vec![matte(0.7)]);
     let prepared = PreparedScene::new(&scene).expect("a tree");
-    assert_eq!(Place::of(&prepared), Place::Outside);
+    assert_eq!(Setting::of(&prepared), Setting::Outside);
     let camera = default_view(&prepared, 1.6).camera;
     assert!(camera.eye.x > 1.0 && camera.eye.y > 1.0 && camera.eye.z > 1.0);
 }

@@ -3,8 +3,8 @@
 use raywood::{Aabb, Ray, Vec3};
 use raywood_scene::{Camera, Light, LightKind, Rgb, ambient};
 
-use super::place::standpoints;
 use super::probes::Surroundings;
+use super::setting::standpoints;
 use crate::PreparedScene;
 use crate::camera_rays::CameraRays;
 

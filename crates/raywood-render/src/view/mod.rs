@@ -1,18 +1,18 @@
 //! From where a scene is seen and by what it is lit when nobody says: its own camera and lights, else default ones.
 //!
 //! The bounding box alone cannot tell a statue from a room, of which it would show the outer walls. So a few hundred rays
-//! are traced first, always the same ones: see [`Place`].
+//! are traced first, always the same ones: see [`Setting`].
 
 mod inside;
 mod outside;
-mod place;
 mod probes;
+mod setting;
 
 use raywood::{Aabb, Vec3};
 use raywood_scene::{Camera, Light, default_lights, frame_bounds};
 
 use crate::PreparedScene;
-pub use place::Place;
+pub use setting::Setting;
 
 /// A camera and the lights that go with it.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,19 +43,19 @@ pub fn default_view(prepared: &PreparedScene<'_>, aspect: f32) -> View {
 /// A camera for the scene, whether it has cameras of its own or not.
 pub fn choose_camera(prepared: &PreparedScene<'_>, aspect: f32) -> Camera {
     let bounds = prepared.scene().bounds();
-    match Place::of(prepared) {
-        Place::Outside => outside::camera(prepared, &bounds, aspect),
-        Place::Opening { towards } => frame_bounds(&bounds, towards, Vec3::Y, aspect),
-        Place::Inside => inside::camera(prepared, &bounds, aspect),
+    match Setting::of(prepared) {
+        Setting::Outside => outside::camera(prepared, &bounds, aspect),
+        Setting::Opening { towards } => frame_bounds(&bounds, towards, Vec3::Y, aspect),
+        Setting::Inside => inside::camera(prepared, &bounds, aspect),
     }
 }
 
 /// Lights for the scene as the camera sees it, whether it has lights of its own or not.
 pub fn choose_lights(prepared: &PreparedScene<'_>, camera: &Camera) -> Vec<Light> {
     let bounds = prepared.scene().bounds();
-    match Place::of(prepared) {
-        Place::Opening { .. } => inside::lights(prepared, &bounds, camera),
-        Place::Inside if bounds.contains(&Aabb::new(camera.eye, camera.eye)) => {
+    match Setting::of(prepared) {
+        Setting::Opening { .. } => inside::lights(prepared, &bounds, camera),
+        Setting::Inside if bounds.contains(&Aabb::new(camera.eye, camera.eye)) => {
             inside::lights(prepared, &bounds, camera)
         }
         _ => default_lights(camera),

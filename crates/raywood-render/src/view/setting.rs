@@ -1,13 +1,13 @@
-//! What kind of place a scene is: something to look at from outside, or to be in.
+//! What the setting of a scene is: something to look at from outside, or to be in.
 
 use raywood::{Aabb, Vec3};
 
 use super::probes::Surroundings;
 use crate::PreparedScene;
 
-/// What kind of place a scene is, as probe rays from the middle of its bounding box tell.
+/// The setting of a scene, as probe rays from the middle of its bounding box tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum Setting {
     /// A thing, or things under the open sky: seen from outside.
     Outside,
     /// A room with one open side, like a stage: seen through it.
@@ -25,7 +25,7 @@ const CLOSED: f32 = 0.9;
 /// From this share on, it counts as a room at all.
 const ROOM: f32 = 0.65;
 
-impl Place {
+impl Setting {
     /// Finds out. Within a room the walls show their fronts; within a solid thing, backs.
     pub fn of(prepared: &PreparedScene<'_>) -> Self {
         let bounds = prepared.scene().bounds();
