@@ -106,6 +106,20 @@ fn a_solid_thing_is_seen_from_outside() {
     assert!(camera.eye.x > 1.0 && camera.eye.y > 1.0 && camera.eye.z > 1.0);
 }
 
+/// Between the plates of a closed machine there are fronts all around, but no room.
+#[test]
+fn gaps_within_a_machine_are_not_a_room() {
+    let mut walls = room([1.0; 3]);
+    for plate in -9..=9 {
+        let y = 0.1 * plate as f32 + 0.05;
+        walls.push((level(y - 0.01, 0.99, false), 0));
+        walls.push((level(y + 0.01, 0.99, true), 0));
+    }
+    let scene = scene(&walls, &[], vec![matte(0.7)]);
+    let prepared = PreparedScene::new(&scene).expect("a tree");
+    assert_eq!(Setting::of(&prepared), Setting::Outside);
+}
+
 #[test]
 fn up_is_z_for_a_terrain_over_the_xy_plane_only() {
     let hills = |x: f32, y: f32| 0.1 * (3.0 * x).sin() * (4.0 * y).cos();

@@ -26,19 +26,24 @@ pub fn default_direction(up: Vec3) -> Vec3 {
 /// A camera that looks at the box from the direction `from` (any length), with `up` upwards, as near as it can be while
 /// the whole box is in the picture.
 pub fn frame_bounds(bounds: &Aabb, from: Vec3, up: Vec3, aspect: f32) -> Camera {
-    let mut framing = Framing::new(bounds, from, up, aspect);
-    let (center, half) = (framing.center, framing.half);
-    for corner in 0..8 {
-        framing.reach_to(
-            [0, 1, 2].map(|i| center[i] + if corner >> i & 1 == 0 { -half[i] } else { half[i] }),
-        );
-    }
-    framing.camera()
+    let include_corners = |mut framing: Framing| {
+        let (center, half) = (framing.center, framing.half);
+        for corner in 0..8 {
+            framing.include_exact(
+                [0, 1, 2]
+                    .map(|i| center[i] + if corner >> i & 1 == 0 { -half[i] } else { half[i] }),
+            );
+        }
+        framing
+    };
+    let nearest = include_corners(Framing::new(bounds, from, up, aspect));
+    include_corners(nearest.centering()).camera()
 }
 
 /// A search for the nearest place from which a set of points can be seen whole, in a given direction.
 ///
-/// Include every point, in any order and in as many parts as convenient; then ask for the camera.
+/// Include every point, in any order and in as many parts as convenient. Then do the same once more with what
+/// [`centering`](Self::centering) gives, and ask that for the camera.
 #[derive(Clone, Debug)]
 pub struct Framing {
     center: [f64; 3],
@@ -47,10 +52,38 @@ pub struct Framing {
     axes: [[f64; 3]; 3],
     /// The slope of the picture's edges, width and height.
     slopes: [f64; 2],
-    /// How far the points reach beyond each of the four planes at the picture's edges (left, right; bottom, top) if the
-    /// eye were at the centre.
-    reach: [[f64; 2]; 2],
+    /// Where the eye is, along the axes; the first time, at the centre.
+    eye: [f64; 3],
+    /// Whether this is the second time.
+    centers: bool,
+    /// Of each of the four edges of the picture (left, right; bottom, top) the point that counts.
+    extremes: [[Extreme; 2]; 2],
     up: Vec3,
+}
+
+/// The point that is farthest to one side.
+#[derive(Clone, Copy, Debug)]
+struct Extreme {
+    /// How far: the first time beyond the plane through the eye at the picture's edge, the second time as a slope.
+    reach: f64,
+    /// Its distance from the middle of the picture, positive to this side.
+    across: f64,
+    /// Its distance before the eye.
+    depth: f64,
+}
+
+impl Extreme {
+    const NONE: Self = Self { reach: f64::NEG_INFINITY, across: 0.0, depth: 1.0 };
+
+    /// The farther of two. A full order, so that the order in which points come does not matter.
+    fn farther(self, other: Self) -> Self {
+        let order = self
+            .reach
+            .total_cmp(&other.reach)
+            .then(self.depth.total_cmp(&other.depth))
+            .then(self.across.total_cmp(&other.across));
+        if order.is_lt() { other } else { self }
+    }
 }
 
 impl Framing {
@@ -70,51 +103,75 @@ impl Framing {
             // Double precision, since boxes may be tiny and far from the origin.
             axes: [right, back.cross(right), back].map(double),
             slopes: [slope_y * aspect, slope_y],
-            reach: [[f64::NEG_INFINITY; 2]; 2],
+            eye: [0.0; 3],
+            centers: false,
+            extremes: [[Extreme::NONE; 2]; 2],
             up: up.normalize_or_zero(),
         }
     }
 
     /// Demands that a point be in the picture.
     pub fn include(&mut self, point: Vec3) {
-        self.reach_to(double(point));
+        self.include_exact(double(point));
     }
 
     /// Demands everything that another search, otherwise the same, demands.
     pub fn merge(mut self, other: &Self) -> Self {
         for axis in 0..2 {
             for side in 0..2 {
-                self.reach[axis][side] = self.reach[axis][side].max(other.reach[axis][side]);
+                let both = self.extremes[axis][side].farther(other.extremes[axis][side]);
+                self.extremes[axis][side] = both;
             }
         }
         self
     }
 
-    fn reach_to(&mut self, point: [f64; 3]) {
+    fn include_exact(&mut self, point: [f64; 3]) {
         let offset = [0, 1, 2].map(|i| point[i] - self.center[i]);
-        let depth = dot(offset, self.axes[2]);
+        let depth = self.eye[2] - dot(offset, self.axes[2]);
         for axis in 0..2 {
-            let (across, forward) = (dot(offset, self.axes[axis]), self.slopes[axis] * depth);
-            let [low, high] = &mut self.reach[axis];
-            *low = low.max(forward - across);
-            *high = high.max(forward + across);
+            let across = dot(offset, self.axes[axis]) - self.eye[axis];
+            for (side, across) in [-across, across].into_iter().enumerate() {
+                let reach =
+                    if self.centers { across / depth } else { across - self.slopes[axis] * depth };
+                let extreme = &mut self.extremes[axis][side];
+                *extreme = extreme.farther(Extreme { reach, across, depth });
+            }
+        }
+    }
+
+    /// The same search the second time: the eye is as far back as the points included so far demand, and has yet to move
+    /// aside so that the margins on both sides are alike.
+    pub fn centering(&self) -> Self {
+        // Back until no point is beyond a plane, at least so far that eye and target differ; aside by the same reach.
+        let least = self.half.into_iter().fold(0.0, f64::max);
+        let reach = self.extremes.map(|sides| sides.map(|extreme| extreme.reach));
+        let distance = (0..2)
+            .map(|axis| 0.5 * (reach[axis][0] + reach[axis][1]) / self.slopes[axis])
+            .fold(least, f64::max);
+        let aside = reach.map(|[low, high]| if low.is_finite() { 0.5 * (high - low) } else { 0.0 });
+        Self {
+            eye: [aside[0], aside[1], distance],
+            centers: true,
+            extremes: [[Extreme::NONE; 2]; 2],
+            ..self.clone()
         }
     }
 
     /// The camera. Without any points it looks at the middle of the box.
     pub fn camera(&self) -> Camera {
-        // Aside, so that the points are in the middle; and back, until none is beyond a plane. At least so far that eye
-        // and target differ.
-        let middle = |[low, high]: [f64; 2]| if low.is_finite() { 0.5 * (high - low) } else { 0.0 };
-        let aside = self.reach.map(middle);
-        let least = self.half.into_iter().fold(0.0, f64::max);
-        let distance = (0..2)
-            .map(|axis| 0.5 * (self.reach[axis][0] + self.reach[axis][1]) / self.slopes[axis])
-            .fold(least, f64::max);
+        if !self.centers {
+            return self.centering().camera();
+        }
 
+        // The place between the two extremes from which both appear at the same angle: each weighs by the other's depth.
+        let shift = self.extremes.map(|[low, high]| {
+            (high.across * low.depth - low.across * high.depth) / (low.depth + high.depth)
+        });
         let [right, up, back] = self.axes;
-        let target = [0, 1, 2].map(|i| self.center[i] + aside[0] * right[i] + aside[1] * up[i]);
-        let eye = [0, 1, 2].map(|i| target[i] + distance * back[i]);
+        let (x, y) = (self.eye[0] + shift[0], self.eye[1] + shift[1]);
+        let target = [0, 1, 2].map(|i| self.center[i] + x * right[i] + y * up[i]);
+        let eye = [0, 1, 2].map(|i| target[i] + self.eye[2] * back[i]);
         Camera {
             name: String::new(),
             eye: single(eye),
@@ -219,6 +276,13 @@ mod tests {
             for aspect in [0.5, 1.0, 1.6, 3.0] {
                 let camera = default_camera(&bounds, Vec3::Y, aspect);
                 let corners = project(&camera, &bounds, f64::from(aspect));
+                for axis in 0..2 {
+                    let side = |sign: f64| {
+                        corners.iter().fold(f64::MIN, |r, corner| r.max(sign * corner[axis]))
+                    };
+                    let (low, high) = (side(-1.0), side(1.0));
+                    assert!((low - high).abs() < 0.05, "{bounds:?}: margins {low} and {high}");
+                }
                 let reach = corners.iter().flatten().fold(0.0, |r: f64, x| r.max(x.abs()));
                 assert!(reach <= 0.96, "{bounds:?} at {aspect} reaches to {reach}");
                 assert!(reach >= 0.92, "{bounds:?} at {aspect} only reaches to {reach}");
@@ -253,11 +317,18 @@ mod tests {
         let points =
             [Vec3::new(-1.0, 0.0, 0.5), Vec3::new(1.0, -1.0, 1.0), Vec3::new(0.0, 1.0, -1.0)];
         let empty = Framing::new(&bounds, default_direction(Vec3::Y), Vec3::Y, 1.5);
-        let [mut whole, mut part, mut rest] = [empty.clone(), empty.clone(), empty];
-        points.iter().for_each(|&p| whole.include(p));
-        part.include(points[0]);
-        points[1..].iter().for_each(|&p| rest.include(p));
-        assert_eq!(part.merge(&rest).camera(), whole.camera());
+        let all = |mut framing: Framing| {
+            points.iter().for_each(|&p| framing.include(p));
+            framing
+        };
+        let in_parts = |framing: Framing| {
+            let [mut part, mut rest] = [framing.clone(), framing];
+            part.include(points[0]);
+            points[1..].iter().for_each(|&p| rest.include(p));
+            part.merge(&rest)
+        };
+        let whole = all(all(empty.clone()).centering());
+        assert_eq!(in_parts(in_parts(empty).centering()).camera(), whole.camera());
         // Fewer points can be seen from nearer.
         let distance = |camera: Camera| (camera.eye - camera.target).length();
         assert!(distance(whole.camera()) < distance(default_camera(&bounds, Vec3::Y, 1.5)));

@@ -32,20 +32,28 @@ pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -
 
 /// The default camera, moved so near that the surfaces themselves (not only their box) fill the picture.
 fn frame_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, up: Vec3, aspect: f32) -> Camera {
-    let empty = || Framing::new(bounds, default_direction(up), up, aspect);
+    let nearest = Framing::new(bounds, default_direction(up), up, aspect);
+    let centering = include_surfaces(prepared, nearest).centering();
+    include_surfaces(prepared, centering).camera()
+}
+
+/// Includes the corners of all triangles, and of boxes around all spheres.
+fn include_surfaces(prepared: &PreparedScene<'_>, empty: Framing) -> Framing {
     let mesh = &prepared.scene().mesh.triangles;
-    let triangles = mesh
+    let mut framing = mesh
         .triangles()
         .par_iter()
-        .fold(empty, |mut framing, triangle| {
-            for &vertex in triangle {
-                framing.include(mesh.positions()[vertex as usize]);
-            }
-            framing
-        })
-        .reduce(empty, |a, b| a.merge(&b));
+        .fold(
+            || empty.clone(),
+            |mut framing, triangle| {
+                for &vertex in triangle {
+                    framing.include(mesh.positions()[vertex as usize]);
+                }
+                framing
+            },
+        )
+        .reduce(|| empty.clone(), |a, b| a.merge(&b));
 
-    let mut framing = triangles;
     let spheres = &prepared.scene().spheres;
     for sphere in 0..spheres.len() as u32 {
         let Aabb { min, max } = spheres.bounds(sphere);
@@ -59,7 +67,7 @@ fn frame_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, up: Vec3, aspect:
             ));
         }
     }
-    framing.camera()
+    framing
 }
 
 /// Which direction is up: y, as most formats and programs say, or z for a terrain in a world where z is up: flat, not

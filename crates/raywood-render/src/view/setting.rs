@@ -25,6 +25,9 @@ const CLOSED: f32 = 0.9;
 /// From this share on, it counts as a room at all.
 const ROOM: f32 = 0.65;
 
+/// From this mean distance to what is around, as a share of the smallest extent, a place is wide enough to be in.
+const ROOMY: f32 = 0.12;
+
 impl Setting {
     /// Finds out. Within a room the walls show their fronts; within a solid thing, backs.
     pub fn of(prepared: &PreparedScene<'_>) -> Self {
@@ -38,6 +41,12 @@ impl Setting {
         let fronts = median(around.map(|a| a.fronts));
         let enclosed = median(around.map(|a| a.enclosed));
         if fronts < 0.6 || enclosed < ROOM {
+            return Self::Outside;
+        }
+        // The gaps within a machine are enclosed by fronts too, but nobody could stand there.
+        let extent = bounds.extent();
+        let smallest = extent.x.min(extent.y).min(extent.z);
+        if median(around.map(|a| a.distance)) < ROOMY * smallest {
             return Self::Outside;
         }
         if enclosed >= CLOSED {
