@@ -34,10 +34,14 @@ pub(crate) fn load_named(
     notes: &mut Notes,
     library: &mut Library,
 ) -> Result<(), LoadError> {
-    let names = match find(input.path, operand) {
-        Some(_) => vec![operand.to_vec()],
-        None => split_names(operand),
-    };
+    let is_there = |name: &Vec<u8>| find(input.path, name).is_some();
+    let mut names = vec![operand.to_vec()];
+    if !is_there(&names[0]) {
+        let several = split_names(operand);
+        if several.iter().any(is_there) {
+            names = several;
+        }
+    }
     for name in names {
         match find(input.path, &name) {
             Some(path) => load(&path, input.options.strict, notes, library)?,

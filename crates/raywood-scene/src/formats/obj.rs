@@ -319,19 +319,29 @@ impl<'a> Parser<'a> {
         let mut materials = vec![Material::default(); self.materials.len()];
         let mut used: Vec<_> = self.materials.iter().map(|(name, id)| (*id, *name)).collect();
         used.sort_unstable();
+        let mut unknown = Vec::new();
         for (id, name) in used {
             let material = &mut materials[id as usize];
             match name.map(|name| (name, known.get(name))) {
                 Some((_, Some(found))) => material.clone_from(found),
                 Some((name, None)) => {
-                    let problem = format!("no material file defines {}", quoted(name));
-                    self.notes.mend_line(Place::File, &problem, "shown in grey")?;
                     material.name = String::from_utf8_lossy(name).into_owned();
+                    unknown.push(quoted(name));
                 }
                 // Colours of vertices are the whole colour where no material says otherwise.
                 None if !self.mesh.colors.is_empty() => material.diffuse = Rgb::ONE,
                 None => {}
             }
+        }
+        if !unknown.is_empty() {
+            const SHOWN: usize = 3;
+            let count = counted(unknown.len(), "material");
+            let verb = if unknown.len() == 1 { "is" } else { "are" };
+            let dots = if unknown.len() > SHOWN { ", ..." } else { "" };
+            unknown.truncate(SHOWN);
+            let problem =
+                format!("{count} {verb} not defined by any file ({}{dots})", unknown.join(", "));
+            self.notes.mend_line(Place::File, &problem, "shown in grey")?;
         }
 
         let mesh = self.mesh.finish(input)?;
@@ -339,7 +349,7 @@ impl<'a> Parser<'a> {
         Ok(Scene { mesh, materials, warnings, ..Scene::default() })
     }
 
-    /// One line for lines and points, one for all else.
+    /// Says what was passed over: one line for lines and points, one for all else.
     fn say_what_is_left_out(&mut self) -> Result<(), LoadError> {
         if let [(word, _, start), ..] = self.left_out[..]
             && self.mesh.positions.is_empty()
@@ -350,17 +360,17 @@ impl<'a> Parser<'a> {
                 format!("found {}, expected an OBJ statement such as v or f", quoted(word));
             return Err(self.cursor.error_at(place, message));
         }
-        let mut others = Vec::new();
+        let (mut shapes, mut others) = (Vec::new(), Vec::new());
         for &(word, count, _) in &self.left_out {
             match word {
-                b"l" => self
-                    .notes
-                    .say(format!("{} left out: only faces are shown", counted(count, "line"))),
-                b"p" => self
-                    .notes
-                    .say(format!("{} left out: only faces are shown", counted(count, "point"))),
+                b"l" => shapes.push(counted(count, "line statement")),
+                b"p" => shapes.push(counted(count, "point statement")),
                 _ => others.push(format!("{} ({count})", quoted(word))),
             }
+        }
+        if !shapes.is_empty() {
+            let list = shapes.join(" and ");
+            self.notes.say(format!("{list} left out: only faces are shown"));
         }
         if !others.is_empty() {
             let list = others.join(", ");

@@ -159,8 +159,26 @@ impl Ring<'_> {
     }
 }
 
-/// Cuts off ears until a triangle is left.
+/// Cuts off ears until a triangle is left. The triangles of corners at the same place as the one after them come first: they
+/// have no area, and without such corners it is plain what lies inside an ear.
 fn clip_ears(points: &[Point], mut emit: impl FnMut([usize; 3])) {
+    let mut kept: Vec<usize> = Vec::with_capacity(points.len());
+    let last = points.len() - 1;
+    for corner in 0..=last {
+        let next = if corner == last { 0 } else { corner + 1 };
+        if points[corner] == points[next] && last - corner + kept.len() >= 3 {
+            let before = kept.last().copied().unwrap_or(last);
+            emit([before, corner, next]);
+        } else {
+            kept.push(corner);
+        }
+    }
+    let kept_points: Vec<Point> = kept.iter().map(|&corner| points[corner]).collect();
+    clip_distinct_ears(&kept_points, |ear| emit(ear.map(|i| kept[i])));
+}
+
+/// Cuts off ears until a triangle is left; no corner is where the one after it is.
+fn clip_distinct_ears(points: &[Point], mut emit: impl FnMut([usize; 3])) {
     let count = points.len();
     let mut ring = Ring {
         points,
@@ -171,9 +189,7 @@ fn clip_ears(points: &[Point], mut emit: impl FnMut([usize; 3])) {
     };
     // Which corners turn right must be known of all before the first ear is sought.
     for _ in 0..2 {
-        for corner in 0..count {
-            ring.update(corner);
-        }
+        (0..count).for_each(|corner| ring.update(corner));
     }
 
     let mut corner = 0;
@@ -275,8 +291,12 @@ mod tests {
 
     #[test]
     fn huge_concave_polygons_are_said_to_be_cut_roughly() {
-        let zigzag: Vec<[f32; 2]> = (0..5000).map(|i| [i as f32, (i % 2) as f32]).collect();
-        let (triangles, careful) = cut(&zigzag);
+        let spike = |i: usize| {
+            let (angle, radius) = (i as f32 * std::f32::consts::TAU / 5000.0, 1.0 + (i % 2) as f32);
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let sun: Vec<[f32; 2]> = (0..5000).map(spike).collect();
+        let (triangles, careful) = cut(&sun);
         assert!(!careful);
         assert_eq!(triangles.len(), 4998);
     }

@@ -31,6 +31,7 @@ pub(crate) static TOO_MANY_CORNERS: Fault = Fault {
 
 impl RawMesh {
     /// Adds a polygon, cut into triangles.
+    #[inline]
     pub(crate) fn push_polygon(
         &mut self,
         corners: &[u32],

@@ -191,7 +191,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Not-a-numbers of other spellings: `1.#IND`, `1.#QNAN`, `-1.#INF`, `nan(ind)`, and Fortran's `1d-3`; a
-    /// number with a comment right after it.
+    /// number with a comment or a backslash right after it.
     #[cold]
     fn unusual_number(&mut self) -> Option<f32> {
         let mut after = self.clone();
@@ -202,7 +202,7 @@ impl<'a> Cursor<'a> {
             sign * f32::INFINITY
         } else if unsigned.starts_with(b"1.#") || unsigned.starts_with(b"nan(") {
             f32::NAN
-        } else if let Some(at) = memchr::memchr(b'#', &word) {
+        } else if let Some(at) = memchr::memchr2(b'#', b'\\', &word) {
             let value = fast_float2::parse(&word[..at]).ok()?;
             after.at = self.at + at;
             value
@@ -214,28 +214,33 @@ impl<'a> Cursor<'a> {
         Some(value)
     }
 
-    /// The decimal integer ahead, if there is one; what follows it is not looked at.
+    /// The decimal integer ahead, if there is one; what follows it is not looked at. One of more than 18 digits is as large as
+    /// can be, which is out of every range it is compared with.
     #[inline]
     pub(crate) fn integer(&mut self) -> Option<i64> {
-        let start = self.at;
-        let negative = match self.peek() {
-            Some(sign @ (b'-' | b'+')) => {
-                self.at += 1;
-                sign == b'-'
-            }
-            _ => false,
+        let ahead = &self.bytes[self.at..];
+        let (negative, unsigned) = match ahead.split_first() {
+            Some((b'-', rest)) => (true, rest),
+            Some((b'+', rest)) => (false, rest),
+            _ => (false, ahead),
         };
-        let digits = self.at;
         let mut value = 0i64;
-        while let Some(digit @ b'0'..=b'9') = self.peek() {
-            // Saturation: a number this large is out of every range it is compared with.
-            value = value.saturating_mul(10).saturating_add(i64::from(digit - b'0'));
-            self.at += 1;
+        let mut digits = 0;
+        for byte in unsigned {
+            let digit = byte.wrapping_sub(b'0');
+            if digit > 9 {
+                break;
+            }
+            value = value.wrapping_mul(10).wrapping_add(i64::from(digit));
+            digits += 1;
         }
-        if self.at == digits {
-            self.at = start;
+        if digits == 0 {
             return None;
         }
+        if digits > 18 {
+            value = i64::MAX;
+        }
+        self.at += ahead.len() - unsigned.len() + digits;
         Some(if negative { -value } else { value })
     }
 }

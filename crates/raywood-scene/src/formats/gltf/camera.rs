@@ -1,6 +1,6 @@
 //! Cameras of glTF.
 
-use raywood::Aabb;
+use raywood::TriangleMesh;
 
 use super::center_and_radius;
 use super::document::Document;
@@ -13,10 +13,10 @@ use crate::formats::notes::Notes;
 pub(super) fn cameras(
     document: &Document<'_>,
     instances: &[Instance<'_>],
-    bounds: Aabb,
+    triangles: &TriangleMesh,
     notes: &mut Notes,
 ) -> Result<Vec<Camera>, LoadError> {
-    let (center, radius) = center_and_radius(bounds);
+    let mut measure = None;
     let mut cameras = Vec::new();
     for Instance { index, node, to_world } in instances {
         let Some(source) = node.camera.and_then(|c| document.root.cameras.get(c.value())) else {
@@ -43,6 +43,7 @@ pub(super) fn cameras(
             continue;
         }
         // The target is as far away as the middle of the scene, if that is in front.
+        let (center, radius) = *measure.get_or_insert_with(|| center_and_radius(triangles));
         let ahead = (center - eye).dot(forward);
         let distance = if ahead > 0.01 * radius { ahead } else { radius };
         cameras.push(Camera { name, eye, target: eye + distance * forward, up, fov_y });

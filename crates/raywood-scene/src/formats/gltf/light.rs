@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 
 use gltf_json::extensions::scene::khr_lights_punctual::{Light as Source, Type};
 use gltf_json::validation::Checked;
-use raywood::{Aabb, Vec3};
+use raywood::{TriangleMesh, Vec3};
 
 use super::center_and_radius;
 use super::document::Document;
@@ -24,7 +24,7 @@ const EXPOSURE: std::ops::RangeInclusive<f32> = 0.05..=5.0;
 pub(super) fn lights(
     document: &Document<'_>,
     instances: &[Instance<'_>],
-    bounds: Aabb,
+    triangles: &TriangleMesh,
     notes: &mut Notes,
 ) -> Vec<Light> {
     let sources: &[Source] = document.root.as_ref();
@@ -55,13 +55,15 @@ pub(super) fn lights(
         let name = source.name.clone().or_else(|| node.name.clone()).unwrap_or_default();
         lights.push(Light { name, kind, intensity: (strength / PI) * color });
     }
-    expose(&mut lights, bounds, notes);
+    if !lights.is_empty() {
+        expose(&mut lights, triangles, notes);
+    }
     lights
 }
 
 /// Scales all lights if the middle of the scene would be white or black all over.
-fn expose(lights: &mut [Light], bounds: Aabb, notes: &mut Notes) {
-    let (center, radius) = center_and_radius(bounds);
+fn expose(lights: &mut [Light], triangles: &TriangleMesh, notes: &mut Notes) {
+    let (center, radius) = center_and_radius(triangles);
     let reaching = |light: &Light| {
         let falloff = match light.kind {
             LightKind::Point { position } | LightKind::Spot { position, .. } => {

@@ -8,7 +8,7 @@
 //! The crate `gltf-json` reads the JSON and checks what it can. What it does not check (that buffers are as long as promised, that
 //! views and accessors lie within them, that nodes form trees) is checked here, before anything is read or allocated.
 
-use raywood::Aabb;
+use raywood::{TriangleMesh, Vec3};
 
 use self::document::Document;
 use super::notes::Notes;
@@ -58,12 +58,7 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
 
     // Triangles in world space. All sizes are known beforehand.
     let mut mesh = RawMesh::default();
-    let mut size = primitive::Size::default();
-    for instance in &instances {
-        if let Some(mesh) = instance.node.mesh {
-            size = size + primitive::size(&document, mesh.value())?;
-        }
-    }
+    let size = primitive::total_size(&document, &instances)?;
     if size.vertices.max(size.triangles) > MOST {
         let (triangles, vertices) = (size.triangles, size.vertices);
         let message = format!(
@@ -79,10 +74,8 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     }
     let mesh = mesh.finish(input)?;
 
-    // Cameras and lights, which take some measure from the size of it all.
-    let bounds = mesh.triangles.total_bounds();
-    let cameras = camera::cameras(&document, &instances, bounds, &mut notes)?;
-    let lights = light::lights(&document, &instances, bounds, &mut notes);
+    let cameras = camera::cameras(&document, &instances, &mesh.triangles, &mut notes)?;
+    let lights = light::lights(&document, &instances, &mesh.triangles, &mut notes);
     if !root.animations.is_empty() {
         notes.say("animations are not played: shown as stored");
     }
@@ -90,13 +83,15 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     Ok(Scene { mesh, materials, lights, cameras, warnings, ..Scene::default() })
 }
 
-/// The middle and half the diagonal of a box; some place and size if it is empty.
-fn center_and_radius(bounds: Aabb) -> (raywood::Vec3, f32) {
+/// The middle and half the diagonal of all triangles, from which cameras and lights take their measure; some place and size
+/// if there are none.
+fn center_and_radius(triangles: &TriangleMesh) -> (Vec3, f32) {
+    let bounds = triangles.total_bounds();
     let center = bounds.min * 0.5 + bounds.max * 0.5;
     let radius = (bounds.max - bounds.min).length() * 0.5;
     if center.is_finite() && radius.is_finite() && radius > 0.0 {
         (center, radius)
     } else {
-        (raywood::Vec3::ZERO, 1.0)
+        (Vec3::ZERO, 1.0)
     }
 }

@@ -60,8 +60,26 @@ fn vertex_arrays(primitive: &Primitive) -> Option<VertexArrays> {
     Some((positions, normals, attribute(primitive, Semantic::Colors(0))))
 }
 
+/// The size of all that is shown.
+pub(super) fn total_size(
+    document: &Document<'_>,
+    instances: &[Instance<'_>],
+) -> Result<Size, LoadError> {
+    let mut total = Size::default();
+    let mut known: Vec<Option<Size>> = vec![None; document.root.meshes.len()];
+    for mesh in instances.iter().filter_map(|instance| instance.node.mesh) {
+        let Some(known) = known.get_mut(mesh.value()) else { continue };
+        let size = match *known {
+            Some(size) => size,
+            None => *known.insert(size(document, mesh.value())?),
+        };
+        total = total + size;
+    }
+    Ok(total)
+}
+
 /// The size of a mesh, from what its accessors promise and their buffers can hold. Arrays that primitives share count once.
-pub(super) fn size(document: &Document<'_>, mesh: usize) -> Result<Size, LoadError> {
+fn size(document: &Document<'_>, mesh: usize) -> Result<Size, LoadError> {
     let mut size = Size::default();
     let mut seen = HashMap::new();
     for primitive in document.root.meshes.get(mesh).iter().flat_map(|mesh| &mesh.primitives) {

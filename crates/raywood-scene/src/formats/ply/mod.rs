@@ -181,10 +181,9 @@ impl Reader {
             let start = values.offset();
             corners.clear();
             values.list(element, list, &mut corners)?;
-            for &corner in &corners {
-                if corner as usize >= self.mesh.positions.len() {
-                    return Err(self.no_such_vertex(values, start, corner));
-                }
+            let outside = |corner: &&u32| **corner as usize >= self.mesh.positions.len();
+            if let Some(&corner) = corners.iter().find(outside) {
+                return Err(self.no_such_vertex(values, start, corner));
             }
             if corners.len() < 3 {
                 self.notes.mend(&TOO_FEW_CORNERS, || values.place_of(start))?;
@@ -203,10 +202,9 @@ impl Reader {
             corners.clear();
             values.list(element, list, &mut corners)?;
             for strip in corners.split(|&corner| corner == u32::MAX) {
-                for &corner in strip {
-                    if corner as usize >= self.mesh.positions.len() {
-                        return Err(self.no_such_vertex(values, start, corner));
-                    }
+                let outside = |corner: &&u32| **corner as usize >= self.mesh.positions.len();
+                if let Some(&corner) = strip.iter().find(outside) {
+                    return Err(self.no_such_vertex(values, start, corner));
                 }
                 for (i, corners) in strip.windows(3).enumerate() {
                     let [a, b, c] = [corners[0], corners[1], corners[2]];

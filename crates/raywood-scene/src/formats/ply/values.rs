@@ -346,9 +346,14 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
                 Kind::List { count, item } => {
                     let items = self.items(count, item, element)?;
                     if i == list {
-                        let index = |bytes| integer::<LITTLE>(item, bytes);
-                        let to_index = |bytes| u32::try_from(index(bytes)).unwrap_or(u32::MAX);
-                        indices.extend(items.chunks_exact(item.size()).map(to_index));
+                        let mut rest = items;
+                        while let Some((bytes, after)) = rest.split_at_checked(item.size())
+                            && !bytes.is_empty()
+                        {
+                            let index = integer::<LITTLE>(item, bytes);
+                            indices.push(u32::try_from(index).unwrap_or(u32::MAX));
+                            rest = after;
+                        }
                     }
                 }
             }
