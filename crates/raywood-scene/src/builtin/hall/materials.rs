@@ -25,6 +25,7 @@ pub(super) const IRON: MaterialId = 16;
 pub(super) const SEA: MaterialId = 17;
 pub(super) const TERRACE: MaterialId = 18;
 pub(super) const GOLD_LEAF: MaterialId = 19;
+pub(super) const ROOF: MaterialId = 20;
 
 /// All materials, in the order of their numbers.
 pub(super) fn materials() -> Vec<Material> {
@@ -165,5 +166,10 @@ pub(super) fn materials() -> Vec<Material> {
             },
         ),
         matt("gold leaf", Rgb::new(0.86, 0.60, 0.20), Pattern::Plain),
+        matt(
+            "roof",
+            Rgb::new(0.40, 0.16, 0.09),
+            Pattern::Masonry { length: 0.5, height: 0.14, joint: 0.012 },
+        ),
     ]
 }

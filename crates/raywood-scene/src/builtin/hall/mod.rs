@@ -1,11 +1,13 @@
 //! `hall`: a vaulted hall by the sea in the light of a low sun, with polished floors, glass, gold and mirrors.
 
+mod ends;
 mod materials;
 mod ornaments;
 mod pillars;
 mod plan;
 mod shell;
 mod stars;
+mod trim;
 
 use raywood::{Spheres, Vec3};
 

@@ -44,12 +44,11 @@ pub(super) fn add_ornaments(mesh: &mut MeshBuilder, detail: usize) -> Vec<Ball> 
     balls.push((Vec3::new(0.38, 0.20, 1.55), 0.20, m::RUBY_GLASS));
     balls.push((Vec3::new(0.78, 0.13, 1.15), 0.13, m::GOLD));
 
-    // Vases in the arcades.
+    // Vases along the arcades.
     let vase = vase(detail);
-    for (x, z) in
-        [(-2.75, 0.5), (2.75, 1.5), (2.75, -2.0), (-2.75, -2.0), (2.75, -4.0), (-2.75, -4.0)]
-    {
-        let z = FIRST_Z + BAY * (z - 2.5);
+    let near = [(-2.75, 0.0), (2.75, 4.4)];
+    let far = [(2.75, -11.0), (-2.75, -11.0), (2.75, -19.8), (-2.75, -19.8)];
+    for (x, z) in near.into_iter().chain(far) {
         mesh.add(&vase, &Placement::at(Vec3::new(x, 0.0, z)), m::PORCELAIN);
     }
 
