@@ -134,3 +134,37 @@ fn spawned_rays_leave_their_surface() {
     }
     assert!(spawned > 100_000, "only {spawned} rays");
 }
+
+#[test]
+fn spawned_rays_leave_slivers() {
+    let mut rng = Rng::new(4);
+    let mut spawned = 0;
+    for aspect in [1.0, 1e2, 1e4] {
+        for distance in [0.0, 10.0, 1e5] {
+            for _ in 0..10_000 {
+                let center = distance * rng.direction();
+                let along = rng.direction();
+                let across = along.orthonormal_basis().0 / aspect;
+                let p0 = center + 0.5 * along;
+                let p1 = center - 0.5 * along;
+                let p2 = center + rng.range(-0.5, 0.5) * along + across;
+                let mesh =
+                    TriangleMesh::new(vec![p0, p1, p2], vec![[0, 1, 2]]).expect("a triangle");
+                let bvh = Bvh::build(&mesh).expect("it builds");
+
+                let (u, v) = (rng.unit(), rng.unit());
+                let target = (1.0 - u) * p0 + u * (1.0 - v) * p1 + u * v * p2;
+                let from = target + rng.range(0.01, 10.0) * rng.direction();
+                let ray = Ray::new(from, target - from);
+                let Some(hit) = bvh.intersect(&ray) else { continue };
+                let point = bvh.surface_point(&ray, &hit);
+                for _ in 0..4 {
+                    let away = point.spawn(rng.direction());
+                    assert!(!bvh.occluded(&away), "aspect {aspect}: {:?}", bvh.intersect(&away));
+                    spawned += 1;
+                }
+            }
+        }
+    }
+    assert!(spawned > 200_000, "only {spawned} rays");
+}

@@ -17,10 +17,10 @@ pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
     ///
     /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
-    #[arg(default_value = "builtin:hall")]
+    #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
 
-    /// Refuse what would otherwise be mended with a warning
+    /// Refuse what is otherwise mended with a warning
     #[arg(long)]
     strict: bool,
 
