@@ -49,6 +49,11 @@ impl<'a> PreparedScene<'a> {
         self.scene
     }
 
+    /// The box around all surfaces; empty if there are none.
+    pub fn bounds(&self) -> Aabb {
+        self.bvh.tree().bounds()
+    }
+
     /// The structure over the scene's surfaces.
     pub fn bvh(&self) -> &Bvh<Surfaces<'a>> {
         &self.bvh

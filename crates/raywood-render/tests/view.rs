@@ -5,7 +5,8 @@ mod common;
 use common::{camera, level, light, matte, scene};
 use raywood::{Aabb, TriangleMesh, Vec3};
 use raywood_render::{
-    PreparedScene, Progress, RenderOptions, Setting, choose_camera, default_view, render,
+    CameraRays, PreparedScene, Progress, RenderOptions, Setting, choose_camera, default_view,
+    render,
 };
 use raywood_scene::{LightKind, Scene};
 
@@ -151,6 +152,35 @@ fn the_camera_goes_where_the_detail_is() {
     let camera = choose_camera(&PreparedScene::new(&ball).expect("a tree"), 1.6);
     assert!((camera.eye - camera.target).length() < 6.0, "{camera:?}");
     assert!(camera.target.length() < 1.0);
+}
+
+/// A model fills the picture, and a vertex that no triangle uses does not matter.
+#[test]
+fn surfaces_rather_than_their_box_fill_the_picture() {
+    let slope = |x: f32, y: f32| Vec3::new(x, x + y, -y);
+    let mut scene = grid(4, slope);
+    let camera = choose_camera(&PreparedScene::new(&scene).expect("a tree"), 1.6);
+    let mut positions = scene.mesh.triangles.positions().to_vec();
+    positions.push(Vec3::splat(1e6));
+    let triangles = scene.mesh.triangles.triangles().to_vec();
+    scene.mesh.triangles = TriangleMesh::new(positions, triangles).expect("a mesh");
+    assert_eq!(choose_camera(&PreparedScene::new(&scene).expect("a tree"), 1.6), camera);
+
+    // Every vertex is in the picture, and on each pair of opposite sides one comes near the edge or nothing could.
+    let rays = CameraRays::new(&camera, 160, 100).expect("a camera");
+    let forward = rays.ray(80.0, 50.0).direction;
+    let across =
+        (rays.ray(160.0, 50.0).direction - rays.ray(0.0, 50.0).direction).normalize_or_zero();
+    let up = across.cross(forward);
+    let (half_height, half_width) = (17.5f32.to_radians().tan(), 1.6 * 17.5f32.to_radians().tan());
+    let mut reach = 0.0f32;
+    for &vertex in &scene.mesh.triangles.positions()[..25] {
+        let d = vertex - camera.eye;
+        let depth = d.dot(forward);
+        let (x, y) = (d.dot(across) / depth / half_width, d.dot(up) / depth / half_height);
+        reach = reach.max(x.abs()).max(y.abs());
+    }
+    assert!((0.92..0.96).contains(&reach), "{reach}");
 }
 
 #[test]

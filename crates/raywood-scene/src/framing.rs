@@ -111,6 +111,7 @@ impl Framing {
     }
 
     /// Demands that a point be in the picture.
+    #[inline]
     pub fn include(&mut self, point: Vec3) {
         self.include_exact(double(point));
     }
@@ -126,6 +127,7 @@ impl Framing {
         self
     }
 
+    #[inline]
     fn include_exact(&mut self, point: [f64; 3]) {
         let offset = [0, 1, 2].map(|i| point[i] - self.center[i]);
         let depth = self.eye[2] - dot(offset, self.axes[2]);
@@ -135,7 +137,9 @@ impl Framing {
                 let reach =
                     if self.centers { across / depth } else { across - self.slopes[axis] * depth };
                 let extreme = &mut self.extremes[axis][side];
-                *extreme = extreme.farther(Extreme { reach, across, depth });
+                if reach >= extreme.reach {
+                    *extreme = extreme.farther(Extreme { reach, across, depth });
+                }
             }
         }
     }

@@ -42,7 +42,7 @@ pub fn default_view(prepared: &PreparedScene<'_>, aspect: f32) -> View {
 
 /// A camera for the scene, whether it has cameras of its own or not.
 pub fn choose_camera(prepared: &PreparedScene<'_>, aspect: f32) -> Camera {
-    let bounds = prepared.scene().bounds();
+    let bounds = prepared.bounds();
     match Setting::of(prepared) {
         Setting::Outside => outside::camera(prepared, &bounds, aspect),
         Setting::Opening { towards } => frame_bounds(&bounds, towards, Vec3::Y, aspect),
@@ -52,7 +52,7 @@ pub fn choose_camera(prepared: &PreparedScene<'_>, aspect: f32) -> Camera {
 
 /// Lights for the scene as the camera sees it, whether it has lights of its own or not.
 pub fn choose_lights(prepared: &PreparedScene<'_>, camera: &Camera) -> Vec<Light> {
-    let bounds = prepared.scene().bounds();
+    let bounds = prepared.bounds();
     match Setting::of(prepared) {
         Setting::Opening { .. } => inside::lights(prepared, &bounds, camera),
         Setting::Inside if bounds.contains(&Aabb::new(camera.eye, camera.eye)) => {

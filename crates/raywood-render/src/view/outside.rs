@@ -33,25 +33,27 @@ pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -
 /// The default camera, moved so near that the surfaces themselves (not only their box) fill the picture.
 fn frame_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, up: Vec3, aspect: f32) -> Camera {
     let nearest = Framing::new(bounds, default_direction(up), up, aspect);
-    let centering = include_surfaces(prepared, nearest).centering();
-    include_surfaces(prepared, centering).camera()
+    let centering = include_surfaces(prepared, bounds, nearest).centering();
+    include_surfaces(prepared, bounds, centering).camera()
 }
 
-/// Includes the corners of all triangles, and of boxes around all spheres.
-fn include_surfaces(prepared: &PreparedScene<'_>, empty: Framing) -> Framing {
-    let mesh = &prepared.scene().mesh.triangles;
-    let mut framing = mesh
-        .triangles()
-        .par_iter()
-        .fold(
-            || empty.clone(),
-            |mut framing, triangle| {
-                for &vertex in triangle {
-                    framing.include(mesh.positions()[vertex as usize]);
-                }
-                framing
-            },
-        )
+/// Includes all vertices of the mesh, and the corners of boxes around all spheres.
+fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing) -> Framing {
+    // A vertex that no triangle uses may lie anywhere; it counts only if it is where the surfaces are.
+    let inside = |vertex: &&Vec3| {
+        vertex.min(bounds.min) == bounds.min && vertex.max(bounds.max) == bounds.max
+    };
+    let mut framing = prepared
+        .scene()
+        .mesh
+        .triangles
+        .positions()
+        .par_chunks(1 << 14)
+        .map(|vertices| {
+            let mut framing = empty.clone();
+            vertices.iter().filter(inside).for_each(|&vertex| framing.include(vertex));
+            framing
+        })
         .reduce(|| empty.clone(), |a, b| a.merge(&b));
 
     let spheres = &prepared.scene().spheres;

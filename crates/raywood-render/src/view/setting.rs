@@ -31,7 +31,7 @@ const ROOMY: f32 = 0.12;
 impl Setting {
     /// Finds out. Within a room the walls show their fronts; within a solid thing, backs.
     pub fn of(prepared: &PreparedScene<'_>) -> Self {
-        let bounds = prepared.scene().bounds();
+        let bounds = prepared.bounds();
         if bounds.is_empty() {
             return Self::Outside;
         }
