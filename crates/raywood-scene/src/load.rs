@@ -30,8 +30,8 @@ impl LoadOptions {
 /// Loads a scene from a file in one of the known [`FORMATS`], told by the name's extension, or by the file's first bytes
 /// where the extension is missing or unknown.
 ///
-/// What was mended or left out is said in [`Scene::warnings`]. No contents, however broken, make it panic or allocate
-/// more than a small multiple of the bytes that are really there.
+/// What was mended or left out is said in [`Scene::warnings`]. No contents, however broken, make it panic, or allocate for more
+/// than the bytes that are really there can hold. (The copies of meshes that a glTF file asks for are bounded by number.)
 ///
 /// # Errors
 ///

@@ -22,11 +22,9 @@ pub(super) fn cameras(
         let Some(source) = node.camera.and_then(|c| document.root.cameras.get(c.value())) else {
             continue;
         };
-        let name = source.name.clone().or_else(|| node.name.clone()).unwrap_or_default();
         let Some(perspective) = &source.perspective else {
-            notes.say(format!(
-                "camera left out, for it is not perspective: {name} (nodes[{index}])"
-            ));
+            notes
+                .say(format!("nodes[{index}].camera is left out: only perspective ones are known"));
             continue;
         };
 
@@ -42,6 +40,7 @@ pub(super) fn cameras(
             notes.mend_line(place, "sees nothing (its angle or its node's matrix)", "left out")?;
             continue;
         }
+        let name = source.name.clone().or_else(|| node.name.clone()).unwrap_or_default();
         // The target is as far away as the middle of the scene, if that is in front.
         let (center, radius) = *measure.get_or_insert_with(|| center_and_radius(triangles));
         let ahead = (center - eye).dot(forward);

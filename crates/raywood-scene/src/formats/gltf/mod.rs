@@ -15,7 +15,7 @@ use super::notes::Notes;
 use super::raw_mesh::RawMesh;
 use super::{Format, Input};
 use crate::error::{LoadError, Place};
-use crate::{Material, Scene};
+use crate::{Material, MaterialId, Scene};
 
 mod accessor;
 mod camera;
@@ -71,6 +71,9 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     mesh.materials.reserve_exact(size.triangles as usize);
     for instance in &instances {
         primitive::add(&document, instance, &mut mesh, &mut notes)?;
+    }
+    if !mesh.materials.contains(&(materials.len() as MaterialId - 1)) {
+        materials.pop();
     }
     let mesh = mesh.finish(input)?;
 
