@@ -22,7 +22,7 @@ pub use framing::{
     Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,
 };
 pub use light::{Light, LightKind};
-pub use load::{LoadOptions, load_file};
+pub use load::{LoadOptions, load_bytes, load_file};
 pub use material::{Material, MaterialId};
 pub use mesh::Mesh;
 pub use pattern::Pattern;

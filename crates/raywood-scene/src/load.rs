@@ -37,13 +37,22 @@ impl LoadOptions {
 ///
 /// A file that cannot be read, is in no known format, or is broken beyond mending: see [`LoadError`].
 pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
-    let bytes = read_file(path)?;
-    let format = format_of(path, &bytes)?;
+    load_bytes(path, &read_file(path)?, options)
+}
+
+/// Loads a scene as [`load_file`] does, from contents at hand. The path gives the name and extension, and where the other files
+/// that a model names are sought.
+///
+/// # Errors
+///
+/// As [`load_file`].
+pub fn load_bytes(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene, LoadError> {
+    let format = format_of(path, bytes)?;
     if bytes.is_empty() {
         let message = format!("is empty, expected {}", format.description);
         return Err(LoadError::new(path, Place::File, message));
     }
-    let mut scene = (format.load)(&Input { path, bytes: &bytes, options })?;
+    let mut scene = (format.load)(&Input { path, bytes, options })?;
 
     scene.name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     if scene.materials.is_empty() {
