@@ -37,8 +37,8 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// The cell that holds a coordinate, and the place in it, 0 to 1. Far out, where cells can no longer be told apart, the cell
-/// number saturates.
+/// The cell that holds a coordinate, and the place in it, 0 to 1. Far out, where cells can no longer be told apart,
+/// the cell number saturates.
 #[inline]
 fn split(x: f32) -> (i32, f32) {
     let floor = x.floor();

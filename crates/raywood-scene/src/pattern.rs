@@ -25,8 +25,8 @@ pub enum Pattern {
         /// The distance between large veins, roughly.
         size: f32,
     },
-    /// A floor of square marble tiles, chequered in x and z: the diffuse colour and `other`, each tile cut from another piece of stone,
-    /// with a dark joint between tiles.
+    /// A floor of square marble tiles, chequered in x and z: the diffuse colour and `other`, each tile cut from
+    /// another piece of stone, with a dark joint between tiles.
     Tiles {
         /// The colour of every second tile.
         other: Rgb,
@@ -37,7 +37,8 @@ pub enum Pattern {
         /// The width of the joints.
         joint: f32,
     },
-    /// Courses of blocks with joints, for walls that run along x or along z: the diffuse colour, each block a little different.
+    /// Courses of blocks with joints, for walls that run along x or along z: the diffuse colour, each block a
+    /// little different.
     Masonry {
         /// The length of a block.
         length: f32,
@@ -48,7 +49,8 @@ pub enum Pattern {
     },
 }
 
-/// Lattices are moved by this share of a cell, so that surfaces in their planes (a floor at height zero) lie clearly on one side.
+/// Lattices are moved by this share of a cell, so that surfaces in their planes (a floor at height zero) lie
+/// clearly on one side.
 const OFF_LATTICE: f32 = 1.0 / 1024.0;
 
 impl Pattern {

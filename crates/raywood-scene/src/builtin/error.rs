@@ -99,7 +99,8 @@ pub(super) fn closest<'a>(
 
 /// How many letters must be changed, added or removed to get from one word to the other (Levenshtein 1966).
 fn edit_distance(a: &str, b: &str) -> usize {
-    // One row of the table at a time: row[j] is the distance between what was read of `a` and the first j letters of `b`.
+    // One row of the table at a time: row[j] is the distance between what was read of `a` and the first j letters
+    // of `b`.
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, letter) in a.chars().enumerate() {

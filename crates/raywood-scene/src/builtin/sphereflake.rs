@@ -74,8 +74,8 @@ impl Flake {
         Self { spheres: Vec::with_capacity(count), materials: Vec::with_capacity(count) }
     }
 
-    /// Adds a sphere of a generation and, up to the last one, nine spheres of a third of its size on it: six around its equator
-    /// and three around the pole to which `axis` points.
+    /// Adds a sphere of a generation and, up to the last one, nine spheres of a third of its size on it: six around
+    /// its equator and three around the pole to which `axis` points.
     fn grow(&mut self, center: Vec3, radius: f32, axis: Vec3, (generation, last): (u32, u32)) {
         self.spheres.push((center, radius));
         self.materials.push(METALS + generation.min(METAL_COUNT - 1));

@@ -62,7 +62,19 @@ pub(super) fn add_end_walls(mesh: &mut MeshBuilder, detail: usize) {
     }
 }
 
-/// The roofs over nave and aisles, the gables, and the buttresses where the outer walls end.
+/// The buttresses at the four corners, where outer walls and end walls meet.
+pub(super) fn add_buttresses(mesh: &mut MeshBuilder) {
+    let (inner, outer, reach) = (OUTER_X - 0.05, OUTER_X + OUTER_THICKNESS + 0.05, 0.42);
+    for z in [FIRST_Z, LAST_Z] {
+        for [left, right] in [[-outer, -inner], [inner, outer]] {
+            let low = Vec3::new(left, 0.0, z - reach);
+            let high = Vec3::new(right, AISLE_TOP + 0.3, z + reach);
+            mesh.add(&cuboid(low, high), &Placement::IDENTITY, m::STONE);
+        }
+    }
+}
+
+/// The roofs over nave and aisles, and the gables.
 pub(super) fn add_roofs(mesh: &mut MeshBuilder) {
     let end = 0.3;
     let (near, far) = (FIRST_Z + end, LAST_Z - end);
@@ -88,16 +100,6 @@ pub(super) fn add_roofs(mesh: &mut MeshBuilder) {
         }
         for z in [FIRST_Z, LAST_Z] {
             let corner = |x: f32, y: f32, z: f32| Vec3::new(side * x, y, z);
-            let (outer, reach) = (OUTER_X + OUTER_THICKNESS, 0.42);
-            let [a, b] = [outer - 0.65, outer + 0.05].map(|x| side * x);
-            mesh.add(
-                &cuboid(
-                    Vec3::new(a.min(b), 0.0, z - reach),
-                    Vec3::new(a.max(b), AISLE_TOP + 0.3, z + reach),
-                ),
-                &Placement::IDENTITY,
-                m::STONE,
-            );
             let outwards = if z == FIRST_Z { 0.35 } else { -0.35 };
             let mut gable = [
                 corner(0.0, WALL_TOP, z + outwards),

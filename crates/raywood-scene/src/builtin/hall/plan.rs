@@ -1,4 +1,5 @@
-//! The plan of the hall: its measures, in metres. The nave runs along z, away from the eye (towards -z); x is across, y up.
+//! The plan of the hall: its measures, in metres. The nave runs along z, away from the eye (towards -z); x is
+//! across, y up.
 
 use super::super::modelling::{Arch, GroinVault};
 

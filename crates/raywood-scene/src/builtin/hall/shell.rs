@@ -19,6 +19,7 @@ pub(super) fn add_shell(mesh: &mut MeshBuilder, detail: usize) {
     add_ribs_between_bays(mesh, detail);
     add_cornices(mesh);
     ends::add_end_walls(mesh, detail);
+    ends::add_buttresses(mesh);
     ends::add_roofs(mesh);
     ends::add_surroundings(mesh);
 }

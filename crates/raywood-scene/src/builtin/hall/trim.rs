@@ -7,7 +7,8 @@ use super::super::modelling::{
 };
 use super::plan::*;
 
-/// A closed section for ribs that hang from a vault: `x` across, `y` down into the room, a roll between two flat shoulders.
+/// A closed section for ribs that hang from a vault: `x` across, `y` down into the room, a roll between two flat
+/// shoulders.
 pub(super) fn roll_rib(half_width: f32, depth: f32, detail: usize) -> Profile {
     let (w, d) = (half_width, depth);
     Profile::start(-w, -0.05)
@@ -29,7 +30,8 @@ pub(super) fn boss(detail: usize) -> Part {
     revolve(&profile, 24 * detail).placed(&Placement::at(crown))
 }
 
-/// A moulding around an opening: `inner` is how far it reaches into the opening, `outer` how far over the wall, `height` how far out of it.
+/// A moulding around an opening: `inner` is how far it reaches into the opening, `outer` how far over the wall,
+/// `height` how far out of it.
 pub(super) fn moulding(inner: f32, outer: f32, height: f32, detail: usize) -> Profile {
     let middle = 0.5 * (outer - inner);
     Profile::start(outer, -0.02)
@@ -41,7 +43,8 @@ pub(super) fn moulding(inner: f32, outer: f32, height: f32, detail: usize) -> Pr
         .line_to(-inner, -0.02)
 }
 
-/// Mouldings of a nave wall, towards the nave: along the arcade's arch and around the clerestory's window, and the window's tracery.
+/// Mouldings of a nave wall, towards the nave: along the arcade's arch and around the clerestory's window, and the
+/// window's tracery.
 pub(super) fn nave_wall_trim(segments: usize, detail: usize) -> Part {
     let front = Placement::at(Vec3::new(0.0, 0.0, ARCADE_HALF_THICKNESS));
     let mut part = Part::default();

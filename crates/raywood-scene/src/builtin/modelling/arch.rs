@@ -33,9 +33,9 @@ impl Arch {
     }
 }
 
-/// The path along an arch from the foot of its right leg over the crown to the foot of its left leg; `foot` equal to the springing
-/// leaves the legs out. A profile swept along it has its `x` away from the opening and its `y` out of the wall (z), so
-/// a moulding on the wall is drawn from its outer edge to its inner one.
+/// The path along an arch from the foot of its right leg over the crown to the foot of its left leg; `foot` equal
+/// to the springing leaves the legs out. A profile swept along it has its `x` away from the opening and its `y` out
+/// of the wall (z), so a moulding on the wall is drawn from its outer edge to its inner one.
 pub fn arch_path(arch: &Arch, foot: f32, segments: usize) -> Vec<PathPoint> {
     let head = (0..=segments).map(|i| arch.point(i, segments));
     let leg = |side: f32| [side * arch.half_width, foot];

@@ -31,7 +31,8 @@ impl MeshBuilder {
     ///
     /// # Panics
     ///
-    /// If a part names vertices that it does not have, or has positions that are not finite: a mistake in the code that made it.
+    /// If a part names vertices that it does not have, or has positions that are not finite: a mistake in the code
+    /// that made it.
     pub fn finish(self) -> Mesh {
         let triangles = TriangleMesh::new(self.all.positions, self.all.triangles)
             .expect("parts have finite positions and indices in range");

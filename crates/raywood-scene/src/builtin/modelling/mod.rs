@@ -1,8 +1,8 @@
 //! Tools to model smooth shapes by code: closed or open surfaces with shading normals, front faces outside.
 //!
-//! A [`Part`] is a piece of surface without a material; a [`MeshBuilder`] copies parts to their [`Placement`] in the scene.
-//! Parts come from [`revolve`] and [`sweep`], which both move a [`Profile`] through space, from the panels and vaults of
-//! architecture, and from [`Part::add_grid`], on which all of these rest.
+//! A [`Part`] is a piece of surface without a material; a [`MeshBuilder`] copies parts to their [`Placement`] in
+//! the scene. Parts come from [`revolve()`] and [`sweep()`], which both move a [`Profile`] through space, from the
+//! panels and vaults of architecture, and from [`Part::add_grid`], on which all of these rest.
 
 mod arch;
 mod mesh_builder;

@@ -4,7 +4,8 @@ use raywood::Vec3;
 
 use super::Placement;
 
-/// A piece of surface in its own coordinates: vertices with normals, and triangles whose front is where they are counter-clockwise.
+/// A piece of surface in its own coordinates: vertices with normals, and triangles whose front is where they are
+/// counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// The vertex positions.
@@ -42,8 +43,8 @@ impl Cells {
 }
 
 impl Part {
-    /// Adds a smooth surface over a grid of `u` by `v` cells, from the position of each lattice point. Its front is the side to which
-    /// `du x dv` points. Where lattice points coincide (a pole) no triangles are wasted.
+    /// Adds a smooth surface over a grid of `u` by `v` cells, from the position of each lattice point. Its front is
+    /// the side to which `du x dv` points. Where lattice points coincide (a pole) no triangles are wasted.
     pub fn add_grid(&mut self, u: Cells, v: Cells, position: impl Fn(usize, usize) -> Vec3) {
         // Compute the lattice once.
         let first = self.positions.len() as u32;

@@ -18,7 +18,8 @@ impl Placement {
         Self { origin, ..Self::IDENTITY }
     }
 
-    /// The same, turned first about the vertical through the part's origin, counter-clockwise seen from above, in degrees.
+    /// The same, turned first about the vertical through the part's origin, counter-clockwise seen from above, in
+    /// degrees.
     pub fn turned(self, degrees: f32) -> Self {
         // Quarter turns are exact, so that walls at right angles meet without a gap.
         let (sin, cos) = match degrees.rem_euclid(360.0) {

@@ -6,14 +6,14 @@ use raywood::Vec3;
 
 use super::{Cells, Part, Profile};
 
-/// The surface of revolution of a profile: its `x` is the distance from the vertical axis, its `y` the height. Going up the
-/// front is outside; where both ends of the profile lie on the axis the surface is closed.
+/// The surface of revolution of a profile: its `x` is the distance from the vertical axis, its `y` the height.
+/// Going up the front is outside; where both ends of the profile lie on the axis the surface is closed.
 pub fn revolve(profile: &Profile, segments: usize) -> Part {
     revolve_with(profile, segments, |radius, _, _| radius)
 }
 
-/// Like [`revolve`], with the radius changed by a function of radius, height and angle (in radians, counter-clockwise from above): what flutes
-/// and twists a pillar. The function must leave a radius of zero alone.
+/// Like [`revolve`], with the radius changed by a function of radius, height and angle (in radians,
+/// counter-clockwise from above): what flutes and twists a pillar. The function must leave a radius of zero alone.
 pub fn revolve_with(
     profile: &Profile,
     segments: usize,

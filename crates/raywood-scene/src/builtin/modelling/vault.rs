@@ -35,7 +35,8 @@ impl GroinVault {
         (Vec3::new(x, self.spring + self.rise * height, z), -out.normalize_or_zero())
     }
 
-    /// The path of a groin across the whole vault; `sign` (1 or -1) tells which diagonal. Up is down into the room, where ribs go.
+    /// The path of a groin across the whole vault; `sign` (1 or -1) tells which diagonal. Up is down into the room,
+    /// where ribs go.
     pub fn groin_path(&self, sign: f32, segments: usize) -> Vec<PathPoint> {
         (0..=segments)
             .map(|i| {

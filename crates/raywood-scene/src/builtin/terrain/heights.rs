@@ -43,8 +43,8 @@ impl Heights {
         (px * px + pz * pz).sqrt() / half + 0.22 * fray
     }
 
-    /// Fractal noise about -1 to 1 whose octaves fade where the slope of those before is steep: valleys and ridges stay sharp,
-    /// slopes are smooth, as erosion leaves them.
+    /// Fractal noise about -1 to 1 whose octaves fade where the slope of those before is steep: valleys and ridges
+    /// stay sharp, slopes are smooth, as erosion leaves them.
     fn eroded(&self, x: f32, z: f32) -> f32 {
         let (mut px, mut pz, mut height) = (x, z, 0.5);
         let (mut sum, mut slope) = (0.0, [0.0f32; 2]);
@@ -59,8 +59,8 @@ impl Heights {
         2.0 * sum
     }
 
-    /// Ridged fractal noise, 0 to about 1: sharp crests where each octave crosses zero, rough near crests and smooth in valleys
-    /// (Musgrave 1994).
+    /// Ridged fractal noise, 0 to about 1: sharp crests where each octave crosses zero, rough near crests and
+    /// smooth in valleys (Musgrave 1994).
     fn ridged(&self, x: f32, z: f32) -> f32 {
         let (mut px, mut pz, mut height) = (1.3 * x, 1.3 * z, 0.5);
         let (mut sum, mut weight) = (0.0, 1.0f32);

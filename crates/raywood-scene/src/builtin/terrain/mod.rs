@@ -70,8 +70,8 @@ fn island(n: usize, heights: &Heights, eye: Vec3) -> Mesh {
     let side = n + 1;
     let place = |i: usize| SIZE * (i as f32 / n as f32 - 0.5);
 
-    // Heights first, for the normals come from their differences. Each row is computed by itself, so the result does not
-    // depend on how rows are shared out to threads.
+    // Heights first, for the normals come from their differences. Each row is computed by itself, so the result
+    // does not depend on how rows are shared out to threads.
     let mut grid = vec![0.0f32; side * side];
     grid.par_chunks_mut(side).enumerate().for_each(|(j, row)| {
         for (i, height) in row.iter_mut().enumerate() {
