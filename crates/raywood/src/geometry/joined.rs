@@ -28,6 +28,7 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         self.first.len() + self.second.len()
     }
 
+    #[inline]
     fn bounds(&self, primitive: u32) -> Aabb {
         match self.in_second(primitive) {
             None => self.first.bounds(primitive),
@@ -35,7 +36,7 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         match self.in_second(primitive) {
             None => self.first.intersect(primitive, ray),

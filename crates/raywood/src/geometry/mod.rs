@@ -63,7 +63,7 @@ impl<G: Geometry + ?Sized> Geometry for &G {
         (**self).bounds(primitive)
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         (**self).intersect(primitive, ray)
     }

@@ -83,11 +83,13 @@ impl Geometry for Spheres {
         self.spheres.len()
     }
 
+    #[inline]
     fn bounds(&self, primitive: u32) -> Aabb {
         let (center, radius) = self.spheres[primitive as usize];
         sphere_bounds(center, radius)
     }
 
+    #[inline]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         let (center, radius) = self.spheres[primitive as usize];
         let double = |v: Vec3| v.to_array().map(f64::from);

@@ -115,7 +115,9 @@ impl TriangleMesh {
     /// If there is no such triangle.
     #[inline]
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.triangles[triangle as usize].map(|index| self.positions[index as usize])
+        // Not `map`, which the compiler does not always inline.
+        let [a, b, c] = self.triangles[triangle as usize];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The box around all triangles (vertices that no triangle uses do not count).
@@ -136,7 +138,7 @@ impl Geometry for TriangleMesh {
         Aabb::of_points(self.corners(primitive))
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         let [p0, p1, p2] = self.corners(primitive);
         intersect_triangle(ray, p0, p1, p2)

@@ -15,7 +15,7 @@ const TRUSTED_DETERMINANTS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 const DISTANCE_TOLERANCE: f32 = 1.0 / 8192.0;
 
 /// The hit of a ray with the triangle `p0 p1 p2`, from either side, edges and vertices included.
-#[inline]
+#[inline(always)]
 pub(super) fn intersect_triangle(
     ray: &PreparedRay,
     p0: Vec3,
@@ -69,7 +69,11 @@ fn larger_abs(largest: f32, x: f32) -> f32 {
 #[inline(always)]
 fn shear(ray: &PreparedRay, vertex: Vec3) -> [f32; 3] {
     let vertex = vertex.to_array();
-    let [x, y, z] = [0, 1, 2].map(|i| vertex[ray.axes[i]] - ray.permuted_origin[i]);
+    let [x_axis, y_axis, z_axis] = ray.axes;
+    let [origin_x, origin_y, origin_z] = ray.permuted_origin;
+    let x = vertex[x_axis] - origin_x;
+    let y = vertex[y_axis] - origin_y;
+    let z = vertex[z_axis] - origin_z;
     [x - ray.shear[0] * z, y - ray.shear[1] * z, z]
 }
 
