@@ -1,7 +1,7 @@
 //! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
 
 use raywood::{Aabb, BuildError, Bvh, Geometry, Joined, Spheres, TriangleMesh, Vec3};
-use raywood_scene::{Material, MaterialId, Pattern, Rgb, Scene};
+use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
 
 /// All surfaces of a scene: first its triangles, then its spheres.
 pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
@@ -12,6 +12,7 @@ pub struct PreparedScene<'a> {
     bvh: Bvh<Surfaces<'a>>,
     materials: Vec<SurfaceMaterial>,
     triangle_count: u32,
+    axes: Axes,
     transmissive_bounds: Vec<Aabb>,
 }
 
@@ -38,6 +39,7 @@ impl<'a> PreparedScene<'a> {
             bvh,
             materials,
             triangle_count: scene.mesh.triangles.len() as u32,
+            axes: scene.axes(),
             transmissive_bounds: Vec::new(),
         };
         prepared.transmissive_bounds = prepared.find_transmissive_bounds();
@@ -52,6 +54,17 @@ impl<'a> PreparedScene<'a> {
     /// The box around all surfaces; empty if there are none.
     pub fn bounds(&self) -> Aabb {
         self.bvh.tree().bounds()
+    }
+
+    /// Which way is up, and two level directions.
+    pub fn axes(&self) -> &Axes {
+        &self.axes
+    }
+
+    /// What a ray sees that hits nothing; its direction is of unit length.
+    #[inline]
+    pub(crate) fn background(&self, direction: Vec3) -> Rgb {
+        self.scene.background.color(direction.dot(self.axes.up))
     }
 
     /// The structure over the scene's surfaces.

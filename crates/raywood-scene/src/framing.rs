@@ -2,7 +2,7 @@
 
 use raywood::{Aabb, Vec3};
 
-use crate::{Camera, Light, LightKind, Rgb};
+use crate::{Axes, Camera, Light, LightKind, Rgb};
 
 /// The vertical field of view of default cameras, in degrees: that of a 50 mm lens or so, free of distortion.
 const FOV_Y: f32 = 35.0;
@@ -20,7 +20,8 @@ pub fn default_camera(bounds: &Aabb, up: Vec3, aspect: f32) -> Camera {
 
 /// From where [`default_camera`] looks at a model: the front, the right and above.
 pub fn default_direction(up: Vec3) -> Vec3 {
-    if up == Vec3::Z { Vec3::new(0.6, -1.0, 0.45) } else { Vec3::new(0.6, 0.45, 1.0) }
+    let axes = Axes::new(up);
+    0.6 * axes.across + 0.45 * axes.up + axes.along
 }
 
 /// A camera that looks at the box from the direction `from` (any length), with `up` upwards, as near as it can be while

@@ -1,5 +1,6 @@
 //! Scenes for ray tracing: what there is, what it looks like, what lights it and from where it is seen.
 
+mod axes;
 pub mod builtin;
 mod camera;
 mod color;
@@ -14,6 +15,7 @@ mod noise;
 mod pattern;
 mod scene;
 
+pub use axes::Axes;
 pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};

@@ -21,6 +21,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The cameras that the file or the code gave; may be empty. The first is the one to use.
     pub cameras: Vec<Camera>,
+    /// The direction that is up, unit length, where the file, its format or the code says so.
+    pub up: Option<Vec3>,
     /// What rays see that hit nothing.
     pub background: Background,
     /// What was left out or mended while loading, a line each, for the user to read.
@@ -30,7 +32,7 @@ pub struct Scene {
 /// What rays see that hit nothing: a colour that blends from the horizon up and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Background {
-    /// Straight up (positive y).
+    /// Straight up.
     pub zenith: Rgb,
     /// At the horizon.
     pub horizon: Rgb,
@@ -50,13 +52,9 @@ impl Default for Background {
 }
 
 impl Background {
-    /// The colour in a direction (of unit length).
-    pub fn color(&self, direction: Vec3) -> Rgb {
-        let (end, height) = if direction.y >= 0.0 {
-            (self.zenith, direction.y)
-        } else {
-            (self.nadir, -direction.y)
-        };
+    /// The colour in a direction that rises by `rise` in its length of one: 1 is straight up, 0 level, -1 straight down.
+    pub fn color(&self, rise: f32) -> Rgb {
+        let (end, height) = if rise >= 0.0 { (self.zenith, rise) } else { (self.nadir, -rise) };
         // The square root widens the change near the horizon, as a real sky does.
         let blend = height.min(1.0).sqrt();
         (1.0 - blend) * self.horizon + blend * end

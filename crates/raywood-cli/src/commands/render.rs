@@ -129,7 +129,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let Loaded { scene, time: load } = loaded;
+    let Loaded { mut scene, time: load } = loaded;
+    scene.up = args.up.map(|point| point.0).or(scene.up);
     let started = Instant::now();
     let prepared = during_step("building the tree", || pool.install(|| PreparedScene::new(&scene)))
         .map_err(Failure::bad_input)?;

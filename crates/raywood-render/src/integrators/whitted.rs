@@ -55,7 +55,7 @@ impl Tracer<'_> {
     fn radiance(&mut self, ray: &Ray, path: &Path) -> Rgb {
         let frame = self.frame;
         let Some(hit) = frame.scene.bvh().intersect(ray) else {
-            return frame.scene.scene().background.color(ray.direction);
+            return frame.scene.background(ray.direction);
         };
         let surface = Surface::new(frame.scene, ray, &hit);
         let material = surface.material;

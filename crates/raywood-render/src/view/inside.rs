@@ -1,7 +1,7 @@
 //! A camera and lights within a closed room.
 
 use raywood::{Aabb, Ray, Vec3};
-use raywood_scene::{Camera, Light, LightKind, Rgb, ambient};
+use raywood_scene::{Axes, Camera, Light, LightKind, Rgb, ambient};
 
 use super::probes::Surroundings;
 use super::setting::standpoints;
@@ -14,13 +14,15 @@ const FOV_Y: f32 = 55.0;
 /// The best of some views: from each standpoint, stepped back towards the wall, in eight directions.
 pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -> Camera {
     let mut best: Option<(f32, Camera)> = None;
-    for point in standpoints(bounds) {
+    let axes = prepared.axes();
+    for point in standpoints(bounds, axes) {
         if Surroundings::of(prepared, point).fronts < 0.6 {
             continue;
         }
         for eighth in 0..8 {
             let (sin, cos) = (eighth as f32 * std::f32::consts::FRAC_PI_4).sin_cos();
-            let camera = stepped_back(prepared, bounds, point, Vec3::new(cos, 0.0, sin));
+            let towards = cos * axes.across + sin * axes.along;
+            let camera = stepped_back(prepared, bounds, point, towards);
             let score = score(prepared, bounds, &camera, aspect);
             if best.as_ref().is_none_or(|(best, _)| score > *best) {
                 best = Some((score, camera));
@@ -29,7 +31,7 @@ pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -
     }
     match best {
         Some((_, camera)) => camera,
-        None => stepped_back(prepared, bounds, bounds.center(), Vec3::X),
+        None => stepped_back(prepared, bounds, bounds.center(), axes.across),
     }
 }
 
@@ -39,8 +41,9 @@ fn stepped_back(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3, toward
     let behind = prepared.bvh().intersect(&Ray::new(point, -towards));
     let room = behind.map_or(0.25 * diagonal, |hit| hit.t);
     let eye = point - 0.85 * room * towards;
-    let target = eye + 0.3 * diagonal * (towards - 0.12 * Vec3::Y);
-    Camera { name: String::new(), eye, target, up: Vec3::Y, fov_y: FOV_Y }
+    let up = prepared.axes().up;
+    let target = eye + 0.3 * diagonal * (towards - 0.12 * up);
+    Camera { name: String::new(), eye, target, up, fov_y: FOV_Y }
 }
 
 /// How much a view shows: depth, and many different surfaces; nothing right before the eye.
@@ -75,18 +78,19 @@ fn score(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera, aspect: f
 ///
 /// Their strengths follow from how far away their surroundings are, so rooms of any size look alike.
 pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -> Vec<Light> {
-    let extent = bounds.extent();
-    let (length, width, along) = if extent.x >= extent.z {
-        (extent.x, extent.z, Vec3::X)
+    let Axes { across, up, along } = *prepared.axes();
+    let (reach_across, reach_along) = (Axes::reach(bounds, across), Axes::reach(bounds, along));
+    let (length, width, lengthwise) = if reach_across >= reach_along {
+        (reach_across, reach_along, across)
     } else {
-        (extent.z, extent.x, Vec3::Z)
+        (reach_along, reach_across, along)
     };
     let places: &[f32] = if length > 1.5 * width { &[-0.22, 0.0, 0.22] } else { &[0.0] };
 
     let mut lights: Vec<Light> = places
         .iter()
         .filter_map(|&place| {
-            let below = bounds.center() + place * length * along;
+            let below = bounds.center() + place * length * lengthwise;
             below_ceiling(prepared, bounds, below)
         })
         .map(|(position, distance)| point_light("ceiling", position, 0.55 * distance * distance))
@@ -107,11 +111,11 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
     lights.push(ambient(0.3));
 
     // Where the roof is open the sun shines in, steeply and a little aslant.
-    if !prepared.bvh().occluded(&Ray::new(bounds.center(), Vec3::Y)) {
+    if !prepared.bvh().occluded(&Ray::new(bounds.center(), up)) {
         lights.push(Light {
             name: "sun".into(),
             kind: LightKind::Directional {
-                direction: Vec3::new(-0.25, -1.0, -0.35).normalize_or_zero(),
+                direction: -(0.25 * across + up + 0.35 * along).normalize_or_zero(),
             },
             intensity: Rgb::splat(0.9),
         });
@@ -122,11 +126,13 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
 /// A good place for a lamp straight above a point: the most open one of some heights, with the mean distance of what
 /// it lights. `None` if all of them lie within something.
 fn below_ceiling(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3) -> Option<(Vec3, f32)> {
-    let ceiling = prepared.bvh().intersect(&Ray::new(point, Vec3::Y));
-    let height = ceiling.map_or(bounds.max.y - point.y, |hit| hit.t);
+    let up = prepared.axes().up;
+    let ceiling = prepared.bvh().intersect(&Ray::new(point, up));
+    let to_top = 0.5 * Axes::reach(bounds, up) - (point - bounds.center()).dot(up);
+    let height = ceiling.map_or(to_top, |hit| hit.t);
     [0.7, 0.5, 0.3]
         .into_iter()
-        .map(|share| point + share * height * Vec3::Y)
+        .map(|share| point + share * height * up)
         .map(|position| (position, Surroundings::of(prepared, position)))
         .filter(|(_, around)| around.fronts >= 0.6)
         .map(|(position, around)| (position, around.distance))

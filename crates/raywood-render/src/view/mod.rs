@@ -8,7 +8,7 @@ mod outside;
 mod probes;
 mod setting;
 
-use raywood::{Aabb, Vec3};
+use raywood::Aabb;
 use raywood_scene::{Camera, Light, default_lights, frame_bounds};
 
 use crate::PreparedScene;
@@ -45,7 +45,7 @@ pub fn choose_camera(prepared: &PreparedScene<'_>, aspect: f32) -> Camera {
     let bounds = prepared.bounds();
     match Setting::of(prepared) {
         Setting::Outside => outside::camera(prepared, &bounds, aspect),
-        Setting::Opening { towards } => frame_bounds(&bounds, towards, Vec3::Y, aspect),
+        Setting::Opening { towards } => frame_bounds(&bounds, towards, prepared.axes().up, aspect),
         Setting::Inside => inside::camera(prepared, &bounds, aspect),
     }
 }

@@ -9,7 +9,7 @@ use crate::camera_rays::CameraRays;
 
 /// The best of some three-quarter views of where the detail is.
 pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -> Camera {
-    let up = up(prepared, bounds);
+    let up = prepared.axes().up;
     let Some(detail) = detail_bounds(prepared, bounds) else {
         return frame_surfaces(prepared, bounds, up, aspect);
     };
@@ -70,25 +70,6 @@ fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing)
         }
     }
     framing
-}
-
-/// Which direction is up: y, as most formats and programs say, or z for a terrain in a world where z is up: flat, not
-/// quite level, and nowhere overhanging.
-fn up(prepared: &PreparedScene<'_>, bounds: &Aabb) -> Vec3 {
-    let extent = bounds.extent();
-    let width = extent.x.min(extent.y);
-    if !(extent.z > 0.002 * width && extent.z < 0.35 * width) {
-        return Vec3::Y;
-    }
-    let mesh = &prepared.scene().mesh.triangles;
-    let count = mesh.triangles().len();
-    let facing_up = (0..count as u32)
-        .filter(|&triangle| {
-            let [a, b, c] = mesh.corners(triangle);
-            (b - a).cross(c - a).z > 0.0
-        })
-        .count();
-    if count > 0 && facing_up as f32 > 0.98 * count as f32 { Vec3::Z } else { Vec3::Y }
 }
 
 /// The box around where nearly all primitives are, if it is much smaller than the whole: what stands on a wide floor, or

@@ -2,6 +2,8 @@
 
 use raywood::{Aabb, Vec3};
 
+use raywood_scene::Axes;
+
 use super::probes::Surroundings;
 use crate::PreparedScene;
 
@@ -12,7 +14,7 @@ pub enum Setting {
     Outside,
     /// A room with one open side, like a stage: seen through it.
     Opening {
-        /// The horizontal direction in which it is open, along an axis, unit length.
+        /// The level direction in which it is open, unit length.
         towards: Vec3,
     },
     /// A closed room: seen from within.
@@ -35,7 +37,8 @@ impl Setting {
         if bounds.is_empty() {
             return Self::Outside;
         }
-        let around = standpoints(&bounds).map(|point| Surroundings::of(prepared, point));
+        let axes = prepared.axes();
+        let around = standpoints(&bounds, axes).map(|point| Surroundings::of(prepared, point));
 
         // The median over the points: one may lie within a piece of furniture.
         let fronts = median(around.map(|a| a.fronts));
@@ -55,10 +58,11 @@ impl Setting {
 
         // The open rays of all points together: mostly one way, and that a level one?
         let open = 0.2 * around.iter().fold(Vec3::ZERO, |sum, a| sum + a.open_towards);
-        let axis = open.abs().max_axis();
-        let towards = [Vec3::X, Vec3::Y, Vec3::Z][axis] * open[axis].signum();
-        if open.abs().max_element() > 0.5 && axis != 1 {
-            Self::Opening { towards }
+        let (across, along) = (open.dot(axes.across), open.dot(axes.along));
+        let (share, axis) =
+            if across.abs() >= along.abs() { (across, axes.across) } else { (along, axes.along) };
+        if share.abs() > 0.5 && share.abs() > open.dot(axes.up).abs() {
+            Self::Opening { towards: share.signum() * axis }
         } else {
             Self::Outside
         }
@@ -66,9 +70,9 @@ impl Setting {
 }
 
 /// Five points at half height: the middle of the box, and a fifth of its length and width to each side.
-pub(super) fn standpoints(bounds: &Aabb) -> [Vec3; 5] {
-    let (center, extent) = (bounds.center(), bounds.extent());
-    let (x, z) = (0.2 * extent.x * Vec3::X, 0.2 * extent.z * Vec3::Z);
+pub(super) fn standpoints(bounds: &Aabb, axes: &Axes) -> [Vec3; 5] {
+    let center = bounds.center();
+    let [x, z] = [axes.across, axes.along].map(|axis| 0.2 * Axes::reach(bounds, axis) * axis);
     [center, center + x, center - x, center + z, center - z]
 }
 

@@ -86,6 +86,7 @@ pub fn builtin(name_and_parameters: &str) -> Result<Scene, BuiltinError> {
     let values = parse_values(entry, query)?;
     let mut scene = (entry.build)(&values);
     scene.name = entry.name.to_owned();
+    scene.up = Some(raywood::Vec3::Y);
     Ok(scene)
 }
 

@@ -42,7 +42,9 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
         read_binary(input, &mut welder, &mut notes)?;
     }
     let mesh = welder.mesh.finish(input)?;
-    Ok(Scene { mesh, warnings: notes.into_warnings(), ..Scene::default() })
+    // The format does not say, but the programs that write it, for printing and machining, agree on z.
+    let up = Some(Vec3::Z);
+    Ok(Scene { mesh, up, warnings: notes.into_warnings(), ..Scene::default() })
 }
 
 /// The number of facets that the bytes after a binary file's title name.

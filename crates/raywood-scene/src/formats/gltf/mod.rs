@@ -83,7 +83,8 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
         notes.say("animations are not played: shown as stored");
     }
     let warnings = notes.into_warnings();
-    Ok(Scene { mesh, materials, lights, cameras, warnings, ..Scene::default() })
+    let up = Some(Vec3::Y);
+    Ok(Scene { mesh, materials, lights, cameras, up, warnings, ..Scene::default() })
 }
 
 /// The middle and half the diagonal of all triangles, from which cameras and lights take their measure; some place and size
