@@ -53,5 +53,8 @@ fn the_builtins_look_as_they_did() {
 fn a_change_that_one_would_see_is_seen() {
     let now = Picture::read(&rendered("other-terrain", "terrain?seed=12")).expect("a PNG");
     let difference = now.difference(&Picture::read(&stored("terrain")).expect("a PNG"));
-    assert!(difference.mean > LARGEST_MEAN && difference.outliers > MOST_OUTLIERS, "{difference:?}");
+    assert!(
+        difference.mean > LARGEST_MEAN && difference.outliers > MOST_OUTLIERS,
+        "{difference:?}"
+    );
 }
