@@ -1,9 +1,9 @@
 //! The facade: a geometry and the tree over it, with every query.
 
 use crate::parallel;
-use crate::traverse::{closest::closest, occluded::occluded};
+use crate::structures::AccelerationStructure;
 use crate::{
-    BuildError, BuildOptions, Bvh2, Geometry, Hit, Probe, Ray, SurfacePoint, TreeStats,
+    BuildError, BuildOptions, Bvh2, Geometry, Hit, Probe, Ray, StructureStats, SurfacePoint,
     ValidationError,
 };
 
@@ -76,13 +76,13 @@ impl<G: Geometry> Bvh<G> {
     /// As [`intersect`](Self::intersect), telling a probe what is tested.
     #[inline]
     pub fn intersect_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> Option<Hit> {
-        closest(&self.tree, &self.geometry, ray, probe)
+        self.tree.intersect(&self.geometry, ray, probe)
     }
 
     /// As [`occluded`](Self::occluded), telling a probe what is tested.
     #[inline]
     pub fn occluded_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> bool {
-        occluded(&self.tree, &self.geometry, ray, probe)
+        self.tree.occluded(&self.geometry, ray, probe)
     }
 
     /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool. Answers as the single form does.
@@ -112,8 +112,8 @@ impl<G: Geometry> Bvh<G> {
     }
 
     /// Counts, depth, memory and quality of the tree. O(N).
-    pub fn stats(&self) -> TreeStats {
-        TreeStats::of(&self.tree, &BuildOptions::default())
+    pub fn stats(&self) -> StructureStats {
+        self.tree.stats()
     }
 
     /// Checks every invariant of the tree against the geometry. O(N); for tests and after changes.

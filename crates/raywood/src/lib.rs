@@ -47,7 +47,7 @@ mod validate;
 mod vec3;
 
 pub use aabb::Aabb;
-pub use build::BuildOptions;
+pub use build::{BuildOptions, Builder};
 pub use bvh::Bvh;
 pub use error::BuildError;
 pub use geometry::{
@@ -56,8 +56,8 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use ray::Ray;
-pub use stats::TreeStats;
-pub use structures::{Bvh2, Node};
+pub use stats::StructureStats;
+pub use structures::{AccelerationStructure, BruteForce, Bvh2, Node, Structure, StructureKind};
 pub use traverse::{Counts, Probe};
 pub use validate::ValidationError;
 pub use vec3::Vec3;

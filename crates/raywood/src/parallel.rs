@@ -65,3 +65,16 @@ pub(crate) fn fill<I: Sync, O: Send>(inputs: &[I], outputs: &mut [O], f: impl Fn
         *output = f(input);
     }
 }
+
+/// Sorts a slice. The order must be total, so that there is only one result.
+pub(crate) fn sort_unstable_by<T: Send>(
+    items: &mut [T],
+    compare: impl Fn(&T, &T) -> std::cmp::Ordering + Sync,
+) {
+    #[cfg(feature = "rayon")]
+    if items.len() > 2 * GRAIN {
+        items.par_sort_unstable_by(compare);
+        return;
+    }
+    items.sort_unstable_by(compare);
+}

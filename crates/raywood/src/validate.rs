@@ -85,7 +85,7 @@ impl Bvh2 {
     /// # Errors
     ///
     /// The first invariant that does not hold.
-    pub fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {
+    pub(crate) fn check<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {
         let (nodes, primitives) = (self.nodes(), geometry.len());
         if self.primitive_indices().len() != primitives
             || nodes.len() > (2 * primitives).saturating_sub(1)

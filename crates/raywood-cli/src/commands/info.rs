@@ -1,6 +1,6 @@
 //! `raywood info`: what is in a scene, and what its tree is like.
 
-use raywood::{Geometry, TreeStats};
+use raywood::{Geometry, StructureStats};
 use raywood_render::PreparedScene;
 use raywood_scene::{LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn as_text(Loaded { scene, time }: &Loaded, stats: &TreeStats) -> String {
+fn as_text(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> String {
     let mesh = &scene.mesh;
     let bounds = scene.bounds();
     let point = |p: raywood::Vec3| format!("({}, {}, {})", p.x, p.y, p.z);
@@ -137,7 +137,7 @@ fn describe(material: &Material) -> String {
     if parts.is_empty() { "black".to_owned() } else { parts.join(", ") }
 }
 
-fn as_json(Loaded { scene, time }: &Loaded, stats: &TreeStats) -> Value {
+fn as_json(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> Value {
     let bounds = scene.bounds();
     json!({
         "scene": scene.name,
@@ -173,7 +173,7 @@ fn materials(scene: &Scene) -> Vec<Value> {
 }
 
 /// Statistics of a tree, as every command prints them for machines.
-pub(crate) fn tree(stats: &TreeStats) -> Value {
+pub(crate) fn tree(stats: &StructureStats) -> Value {
     json!({
         "primitives": stats.primitives,
         "nodes": stats.nodes,

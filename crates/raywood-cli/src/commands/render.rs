@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use raywood::TreeStats;
+use raywood::StructureStats;
 use raywood_render::{
     PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, default_view, render,
     write_png,
@@ -105,7 +105,7 @@ pub(crate) struct Args {
 struct Report<'a> {
     args: &'a Args,
     scene: &'a Scene,
-    tree: TreeStats,
+    tree: StructureStats,
     load: Duration,
     build: Duration,
     render: RenderStats,

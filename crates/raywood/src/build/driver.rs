@@ -32,6 +32,17 @@ pub(crate) struct Split {
     pub(crate) right: PackedAabb,
 }
 
+impl Split {
+    /// The set divided as it stands, its first `left_count` primitives to the left.
+    pub(super) fn at(bounds: &[PackedAabb], indices: &[u32], left_count: usize) -> Self {
+        let (left, right) = indices.split_at(left_count);
+        let around = |part: &[u32]| {
+            part.iter().fold(PackedAabb::EMPTY, |all, &i| all.union(bounds[i as usize]))
+        };
+        Self { left_count, left: around(left), right: around(right) }
+    }
+}
+
 /// The bounds of every primitive, checked.
 pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<PackedAabb>, BuildError> {
     let primitives = geometry.len();
@@ -148,13 +159,18 @@ pub(crate) fn split_at_median(bounds: &[PackedAabb], indices: &mut [u32]) -> Spl
     indices.select_nth_unstable_by(left_count, |a, b| {
         center(a)[axis].total_cmp(&center(b)[axis]).then_with(|| a.cmp(b))
     });
-    let bounds_of =
-        |part: &[u32]| part.iter().fold(PackedAabb::EMPTY, |a, &i| a.union(bounds[i as usize]));
-    Split {
-        left_count,
-        left: bounds_of(&indices[..left_count]),
-        right: bounds_of(&indices[left_count..]),
-    }
+    Split::at(bounds, indices, left_count)
+}
+
+/// Divides a set by a property of each primitive's box; `None` if all or none have it.
+pub(super) fn partition_by(
+    bounds: &[PackedAabb],
+    indices: &mut [u32],
+    goes_left: impl Fn(&PackedAabb) -> bool,
+) -> Option<Split> {
+    let left_count = partition(indices, |i| goes_left(&bounds[i as usize]));
+    let divides = 0 < left_count && left_count < indices.len();
+    divides.then(|| Split::at(bounds, indices, left_count))
 }
 
 /// Copies the reachable nodes of a pool in depth-first order, pair by pair, without the room that leaves of several
@@ -176,4 +192,18 @@ fn close_gaps(pool: &[Node]) -> Vec<Node> {
     }
     nodes.shrink_to_fit();
     nodes
+}
+
+/// Moves the numbers for which `goes_left` holds to the front, in place, and tells how many they are.
+pub(super) fn partition(indices: &mut [u32], goes_left: impl Fn(u32) -> bool) -> usize {
+    let (mut left, mut right) = (0, indices.len());
+    while left < right {
+        if goes_left(indices[left]) {
+            left += 1;
+        } else {
+            right -= 1;
+            indices.swap(left, right);
+        }
+    }
+    left
 }

@@ -1,10 +1,15 @@
 //! Builders: from primitives to the binary tree of [`Bvh2`](crate::Bvh2). One builder per file; `driver.rs` holds what
 //! they share, the recursion and its parallel form.
 
+mod builder;
 pub(crate) mod driver;
+mod median;
+mod midpoint;
 mod options;
 mod packed_aabb;
-pub(crate) mod sah_binned;
+mod sah_binned;
+mod sah_sweep;
 
+pub use builder::Builder;
 pub use options::BuildOptions;
 pub(crate) use packed_aabb::PackedAabb;

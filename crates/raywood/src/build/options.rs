@@ -1,5 +1,7 @@
 //! What a caller can choose about a build.
 
+use super::PackedAabb;
+
 /// How to build a tree. The defaults are good; start from them:
 ///
 /// ```
@@ -34,5 +36,19 @@ impl BuildOptions {
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
         }
+    }
+
+    /// Whether dividing a set of `count` primitives costs less than a leaf over it; `split_cost` is `N_l*A_l + N_r*A_r` in half areas.
+    pub(super) fn split_is_cheaper(
+        &self,
+        count: usize,
+        node_bounds: &PackedAabb,
+        split_cost: f64,
+    ) -> bool {
+        let area = node_bounds.half_area();
+        let (node_cost, primitive_cost) =
+            (f64::from(self.node_cost), f64::from(self.primitive_cost));
+        let leaf_cost = primitive_cost * count as f64 * area;
+        2.0 * node_cost * area + primitive_cost * split_cost < leaf_cost
     }
 }

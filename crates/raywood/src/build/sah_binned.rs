@@ -1,11 +1,11 @@
 //! The binned surface area heuristic: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
 
 use super::PackedAabb;
-use super::driver::{Split, Splitter, split_at_median};
+use super::driver::{Split, Splitter, partition, split_at_median};
 use crate::BuildOptions;
 
 /// The most bins per axis.
-pub(crate) const MAX_BINS: usize = 32;
+pub(super) const MAX_BINS: usize = 32;
 
 /// Sets up to this size are sorted into few bins: clearing and sweeping many would take longer than all the rest.
 const SMALL_SET: usize = 24;
@@ -15,13 +15,13 @@ const SMALL_SET_BINS: usize = 8;
 
 /// Sorts centroids into equal bins along each axis and splits between the two bins where `N_l*A_l + N_r*A_r` is smallest.
 /// Does not split where a leaf is cheaper (natural termination).
-pub(crate) struct BinnedSah {
+pub(super) struct BinnedSah {
     options: BuildOptions,
 }
 
 impl BinnedSah {
     /// With options whose values are in range.
-    pub(crate) fn new(options: &BuildOptions) -> Self {
+    pub(super) fn new(options: &BuildOptions) -> Self {
         Self { options: options.clamped() }
     }
 }
@@ -111,16 +111,9 @@ impl Splitter for BinnedSah {
 
         // Natural termination: leave the set whole where testing all of it costs no more than the best split, as long
         // as it is small enough to be a leaf.
-        let options = &self.options;
-        let area = node_bounds.half_area();
-        let (node_cost, primitive_cost) =
-            (f64::from(options.node_cost), f64::from(options.primitive_cost));
-        let leaf_cost = primitive_cost * count as f64 * area;
-        let split_is_cheaper =
-            |cost: f64| 2.0 * node_cost * area + primitive_cost * cost < leaf_cost;
-        if count <= options.max_leaf_size
-            && !best.as_ref().is_some_and(|best| split_is_cheaper(best.cost))
-        {
+        let is_cheaper =
+            |best: &Candidate| self.options.split_is_cheaper(count, node_bounds, best.cost);
+        if count <= self.options.max_leaf_size && !best.as_ref().is_some_and(is_cheaper) {
             return None;
         }
 
@@ -188,18 +181,4 @@ fn sweep(bins: &[Bin], axis: usize, best: &mut Option<Candidate>) {
         }
         left = left.merged(*bin);
     }
-}
-
-/// Moves the numbers for which `goes_left` holds to the front, in place, and tells how many they are.
-fn partition(indices: &mut [u32], goes_left: impl Fn(u32) -> bool) -> usize {
-    let (mut left, mut right) = (0, indices.len());
-    while left < right {
-        if goes_left(indices[left]) {
-            left += 1;
-        } else {
-            right -= 1;
-            indices.swap(left, right);
-        }
-    }
-    left
 }

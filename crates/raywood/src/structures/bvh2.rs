@@ -1,7 +1,10 @@
 //! The lecture's tree: a binary bounding volume hierarchy of 32-byte nodes in one pool.
 
-use crate::build::{driver, sah_binned::BinnedSah};
-use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3};
+use super::AccelerationStructure;
+use crate::build::Builder;
+use crate::traverse::{closest::closest, occluded::occluded};
+use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
+use crate::{StructureStats, ValidationError, Vec3};
 
 /// A node of 32 bytes, `{ bounds.min, left_first, bounds.max, count }`: half a cache line, so that two children, which lie side by
 /// side, are 64 bytes.
@@ -94,15 +97,13 @@ pub struct Bvh2 {
 }
 
 impl Bvh2 {
-    /// Builds the tree with the binned surface area heuristic. O(N log N) time, in parallel in the caller's rayon pool; the same
-    /// tree for any number of threads.
+    /// Builds the tree with the binned surface area heuristic: see [`build_by`](Self::build_by). O(N log N).
     ///
     /// # Errors
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
-        let bounds = driver::primitive_bounds(geometry)?;
-        Ok(driver::build(&bounds, &BinnedSah::new(options)))
+        Self::build_by(Builder::SahBinned, geometry, options)
     }
 
     /// A tree from nodes and indices that a builder made.
@@ -136,5 +137,30 @@ impl Bvh2 {
     pub(crate) fn children(&self, interior: &Node) -> [&Node; 2] {
         let pair = &self.nodes[interior.left_first() as usize..][..2];
         [&pair[0], &pair[1]]
+    }
+}
+
+impl AccelerationStructure for Bvh2 {
+    #[inline]
+    fn intersect<G: Geometry, P: Probe>(
+        &self,
+        geometry: &G,
+        ray: &Ray,
+        probe: &mut P,
+    ) -> Option<Hit> {
+        closest(self, geometry, ray, probe)
+    }
+
+    #[inline]
+    fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
+        occluded(self, geometry, ray, probe)
+    }
+
+    fn stats(&self) -> StructureStats {
+        StructureStats::of_tree(self, &BuildOptions::default())
+    }
+
+    fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {
+        self.check(geometry)
     }
 }

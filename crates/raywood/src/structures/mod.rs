@@ -1,8 +1,44 @@
-//! Acceleration structures, one per file.
+//! Acceleration structures, one per file or folder, behind one trait and in one registry.
 
+mod brute_force;
 mod bvh2;
+mod registry;
+mod structure;
 
+pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
+pub use registry::StructureKind;
+pub use structure::Structure;
+
+use crate::{Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
 
 /// The most levels a tree may have, the root's counted: what the traversals' stacks hold.
 pub(crate) const MAX_DEPTH: usize = 64;
+
+/// What every acceleration structure can do.
+///
+/// A structure holds boxes, cells and primitive numbers, not the geometry, which every query is given: it must be the one that the
+/// structure was built over. All structures give the same answers, to the bit: the hit of least distance, of equal ones that of the
+/// lowest primitive number.
+pub trait AccelerationStructure: Send + Sync {
+    /// The closest hit at `t_min <= t < t_max`. The probe is told what is tested.
+    fn intersect<G: Geometry, P: Probe>(
+        &self,
+        geometry: &G,
+        ray: &Ray,
+        probe: &mut P,
+    ) -> Option<Hit>;
+
+    /// Whether the ray hits anything at `t_min <= t < t_max`. The probe is told what is tested.
+    fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool;
+
+    /// Counts, depth, memory and quality. O(size of the structure).
+    fn stats(&self) -> StructureStats;
+
+    /// Checks every invariant against the geometry. O(size of the structure); for tests.
+    ///
+    /// # Errors
+    ///
+    /// The first invariant that does not hold.
+    fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError>;
+}

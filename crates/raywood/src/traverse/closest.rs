@@ -1,7 +1,8 @@
 //! The closest hit of one ray: depth first, nearer child first.
 
 use super::Probe;
-use super::slab::{entry, inside_own_bounds, lengthened};
+use super::nearest::Nearest;
+use super::slab::{entry, lengthened};
 use super::stack::Stack;
 use crate::structures::Bvh2;
 use crate::{Geometry, Hit, PreparedRay, Ray};
@@ -14,13 +15,11 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
     probe: &mut P,
 ) -> Option<Hit> {
     let ray = PreparedRay::new(ray)?;
-    let mut best: Option<Hit> = None;
-    // Where looking further is of no use: the ray's end, later the closest hit so far.
-    let mut t_max = ray.t_max;
+    let mut nearest = Nearest::new(&ray);
 
     let mut node = tree.nodes().first()?;
     probe.boxes(1);
-    entry(&ray, t_max, node)?;
+    entry(&ray, nearest.t_max(), node)?;
 
     // Nodes to visit later, with the distance at which the ray enters them.
     let mut stack = Stack::<(u32, f32)>::new();
@@ -28,20 +27,12 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
         if node.is_leaf() {
             probe.primitives(node.count() as usize);
             for &primitive in tree.leaf_primitives(node) {
-                if let Some(hit) = geometry.intersect(primitive, &ray)
-                    && let Some(hit) = inside_own_bounds(&ray, hit, &geometry.bounds(primitive))
-                    && best.is_none_or(|best| {
-                        hit.t < best.t || (hit.t == best.t && primitive < best.primitive)
-                    })
-                {
-                    best = Some(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
-                    t_max = hit.t;
-                }
+                nearest.test(geometry, &ray, primitive);
             }
         } else {
             probe.boxes(2);
             let [left, right] = tree.children(node);
-            match (entry(&ray, t_max, left), entry(&ray, t_max, right)) {
+            match (entry(&ray, nearest.t_max(), left), entry(&ray, nearest.t_max(), right)) {
                 (Some(near_left), Some(near_right)) => {
                     let left_first = near_left <= near_right;
                     let (near, far) =
@@ -63,9 +54,9 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
         }
 
         // On to the next node that begins before the closest hit.
-        let limit = lengthened(t_max);
+        let limit = lengthened(nearest.t_max());
         node = loop {
-            let Some((next, near)) = stack.pop() else { return best };
+            let Some((next, near)) = stack.pop() else { return nearest.into_hit() };
             if near <= limit {
                 break &tree.nodes()[next as usize];
             }

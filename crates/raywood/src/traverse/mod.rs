@@ -2,9 +2,10 @@
 //! that counts what happens and costs nothing when absent.
 
 pub(crate) mod closest;
+pub(crate) mod nearest;
 pub(crate) mod occluded;
 mod probe;
-mod slab;
+pub(crate) mod slab;
 mod stack;
 
 pub use probe::{Counts, Probe};

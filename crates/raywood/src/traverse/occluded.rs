@@ -1,7 +1,8 @@
 //! Whether anything blocks a ray: depth first, in any order, until the first hit.
 
 use super::Probe;
-use super::slab::{entry, inside_own_bounds};
+use super::nearest::blocks;
+use super::slab::entry;
 use super::stack::Stack;
 use crate::structures::Bvh2;
 use crate::{Geometry, PreparedRay, Ray};
@@ -26,9 +27,7 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
         if node.is_leaf() {
             for &primitive in tree.leaf_primitives(node) {
                 probe.primitives(1);
-                if let Some(hit) = geometry.intersect(primitive, &ray)
-                    && inside_own_bounds(&ray, hit, &geometry.bounds(primitive)).is_some()
-                {
+                if blocks(geometry, &ray, primitive) {
                     return true;
                 }
             }

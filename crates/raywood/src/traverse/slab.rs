@@ -9,13 +9,13 @@ const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// The distance up to which boxes must be looked into when hits count up to `far`.
 #[inline]
-pub(super) fn lengthened(far: f32) -> f32 {
+pub(crate) fn lengthened(far: f32) -> f32 {
     far + far.abs() * SLACK
 }
 
 /// The distance at which the ray enters the node's box, or `None` if it misses it or comes there only after `t_max`.
 #[inline]
-pub(super) fn entry(ray: &PreparedRay, t_max: f32, node: &Node) -> Option<f32> {
+pub(crate) fn entry(ray: &PreparedRay, t_max: f32, node: &Node) -> Option<f32> {
     let (near, far) = overlap(ray, t_max, |which| node.corner(which));
     (near <= lengthened(far)).then_some(near)
 }
@@ -27,7 +27,7 @@ pub(super) fn entry(ray: &PreparedRay, t_max: f32, node: &Node) -> Option<f32> {
 /// whether such a hit is found would depend on what else was found earlier; after this no hit lies before any box around its
 /// primitive, for the slab test never enters an outer box later than an inner one.
 #[inline]
-pub(super) fn inside_own_bounds(
+pub(crate) fn inside_own_bounds(
     ray: &PreparedRay,
     hit: PrimitiveHit,
     bounds: &Aabb,

@@ -1,0 +1,44 @@
+//! The builders of binary trees, by name.
+
+use super::driver;
+use super::median::Median;
+use super::midpoint::Midpoint;
+use super::sah_binned::BinnedSah;
+use super::sah_sweep::SweepSah;
+use crate::{BuildError, BuildOptions, Bvh2, Geometry};
+
+/// How a binary tree is built: the same kind of tree, of different quality.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Builder {
+    /// Split in the middle of the node's longest axis.
+    Midpoint,
+    /// Halve by number of primitives along the axis of largest spread.
+    Median,
+    /// Try every split by the surface area heuristic.
+    SahSweep,
+    /// Try the splits between a few bins by the surface area heuristic: nearly as good, much faster.
+    #[default]
+    SahBinned,
+}
+
+impl Bvh2 {
+    /// Builds the tree with the given builder, in parallel in the caller's rayon pool; the same tree for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Too many primitives, or one whose box is empty or not finite.
+    pub fn build_by<G: Geometry>(
+        builder: Builder,
+        geometry: &G,
+        options: &BuildOptions,
+    ) -> Result<Self, BuildError> {
+        let bounds = driver::primitive_bounds(geometry)?;
+        Ok(match builder {
+            Builder::Midpoint => driver::build(&bounds, &Midpoint::new(options)),
+            Builder::Median => driver::build(&bounds, &Median::new(options)),
+            Builder::SahSweep => driver::build(&bounds, &SweepSah::new(options)),
+            Builder::SahBinned => driver::build(&bounds, &BinnedSah::new(options)),
+        })
+    }
+}

@@ -1,0 +1,106 @@
+//! The registry of structures: names and how each is built. A new structure is one line here.
+
+use super::{AccelerationStructure, BruteForce, Bvh2};
+use crate::build::Builder;
+use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
+
+/// Defines the kinds, their names, and the type that holds a structure of any kind.
+macro_rules! structures {
+    ($($kind:ident, $type:ident, $name:literal, $description:literal, $build:expr;)*) => {
+        /// The kinds of acceleration structure.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum StructureKind {
+            $(#[doc = $description] $kind,)*
+        }
+
+        impl StructureKind {
+            /// All kinds.
+            pub const ALL: &[Self] = &[$(Self::$kind,)*];
+
+            /// Its name, as command lines and tables have it.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $name,)*
+                }
+            }
+
+            /// What it is, in one line.
+            pub fn description(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $description,)*
+                }
+            }
+        }
+
+        /// A structure of any kind.
+        #[derive(Clone, Debug)]
+        pub(super) enum AnyStructure {
+            $($kind($type),)*
+        }
+
+        impl AnyStructure {
+            pub(super) fn build<G: Geometry>(
+                kind: StructureKind,
+                geometry: &G,
+                options: &BuildOptions,
+            ) -> Result<Self, BuildError> {
+                Ok(match kind {
+                    $(StructureKind::$kind => Self::$kind($build(geometry, options)?),)*
+                })
+            }
+        }
+
+        impl AccelerationStructure for AnyStructure {
+            #[inline]
+            fn intersect<G: Geometry, P: Probe>(
+                &self,
+                geometry: &G,
+                ray: &Ray,
+                probe: &mut P,
+            ) -> Option<Hit> {
+                match self {
+                    $(Self::$kind(structure) => structure.intersect(geometry, ray, probe),)*
+                }
+            }
+
+            #[inline]
+            fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
+                match self {
+                    $(Self::$kind(structure) => structure.occluded(geometry, ray, probe),)*
+                }
+            }
+
+            fn stats(&self) -> StructureStats {
+                match self {
+                    $(Self::$kind(structure) => structure.stats(),)*
+                }
+            }
+
+            fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {
+                match self {
+                    $(Self::$kind(structure) => structure.validate(geometry),)*
+                }
+            }
+        }
+    };
+}
+
+structures! {
+    BruteForce, BruteForce, "brute-force", "No structure: every ray tests every primitive.", BruteForce::build;
+    BvhMidpoint, Bvh2, "bvh-midpoint", "Binary BVH, split in the middle of the longest axis.",
+        |geometry, options| Bvh2::build_by(Builder::Midpoint, geometry, options);
+    BvhMedian, Bvh2, "bvh-median", "Binary BVH, halved by number of primitives.",
+        |geometry, options| Bvh2::build_by(Builder::Median, geometry, options);
+    BvhSahSweep, Bvh2, "bvh-sah-sweep", "Binary BVH, every split tried by the surface area heuristic.",
+        |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
+    BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, binned surface area heuristic: the default.",
+        |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
+}
+
+impl StructureKind {
+    /// The kind of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+    }
+}

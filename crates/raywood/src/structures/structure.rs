@@ -1,0 +1,117 @@
+//! The facade over structures of any kind: a geometry and a structure over it.
+
+use super::registry::AnyStructure;
+use super::{AccelerationStructure, StructureKind};
+use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats};
+use crate::{SurfacePoint, ValidationError, parallel};
+
+/// A geometry with an acceleration structure over it whose kind is chosen at run time: for comparing. [`Bvh`](crate::Bvh) is the one for
+/// everyday use.
+///
+/// ```
+/// use raywood::{Ray, Structure, StructureKind, TriangleMesh};
+///
+/// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriangleMesh::new(positions, vec![[0, 1, 2]])?;
+/// for &kind in StructureKind::ALL {
+///     let structure = Structure::build(kind, &mesh, &Default::default())?;
+///     assert!(structure.occluded(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0])), "{}", kind.name());
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Structure<G> {
+    geometry: G,
+    kind: StructureKind,
+    structure: AnyStructure,
+}
+
+impl<G: Geometry> Structure<G> {
+    /// Builds a structure of the given kind over the geometry. The same structure for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Too many primitives, or one whose box is empty or not finite.
+    pub fn build(
+        kind: StructureKind,
+        geometry: G,
+        options: &BuildOptions,
+    ) -> Result<Self, BuildError> {
+        let structure = AnyStructure::build(kind, &geometry, options)?;
+        Ok(Self { geometry, kind, structure })
+    }
+
+    /// What kind it is.
+    pub fn kind(&self) -> StructureKind {
+        self.kind
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &G {
+        &self.geometry
+    }
+
+    /// The closest hit at `t_min <= t < t_max`; of equally near ones that with the lowest primitive number.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.intersect_probed(ray, &mut ())
+    }
+
+    /// Whether the ray hits anything at `t_min <= t < t_max`.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.occluded_probed(ray, &mut ())
+    }
+
+    /// As [`intersect`](Self::intersect), telling a probe what is tested.
+    #[inline]
+    pub fn intersect_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> Option<Hit> {
+        self.structure.intersect(&self.geometry, ray, probe)
+    }
+
+    /// As [`occluded`](Self::occluded), telling a probe what is tested.
+    #[inline]
+    pub fn occluded_probed<P: Probe>(&self, ray: &Ray, probe: &mut P) -> bool {
+        self.structure.occluded(&self.geometry, ray, probe)
+    }
+
+    /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "as many hits as rays");
+        parallel::fill(rays, hits, |ray| self.intersect(ray));
+    }
+
+    /// [`occluded`](Self::occluded) for many rays, over all cores of the caller's rayon pool.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
+        parallel::fill(rays, occluded, |ray| self.occluded(ray));
+    }
+
+    /// The point that a ray hit, from which the next ray can be spawned. `hit` must be this structure's answer to `ray`.
+    #[inline]
+    pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.geometry.surface_point(ray, hit)
+    }
+
+    /// Counts, depth, memory and quality.
+    pub fn stats(&self) -> StructureStats {
+        self.structure.stats()
+    }
+
+    /// Checks every invariant of the structure against the geometry; for tests.
+    ///
+    /// # Errors
+    ///
+    /// The first invariant that does not hold.
+    pub fn validate(&self) -> Result<(), ValidationError> {
+        self.structure.validate(&self.geometry)
+    }
+}

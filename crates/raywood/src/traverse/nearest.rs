@@ -1,0 +1,54 @@
+//! Testing primitives, as every traversal of every structure does it.
+
+use super::slab::inside_own_bounds;
+use crate::{Geometry, Hit, PreparedRay, PrimitiveHit};
+
+/// The hit of a ray with one primitive; depends on nothing else.
+#[inline]
+fn hit<G: Geometry>(geometry: &G, ray: &PreparedRay, primitive: u32) -> Option<PrimitiveHit> {
+    inside_own_bounds(ray, geometry.intersect(primitive, ray)?, &geometry.bounds(primitive))
+}
+
+/// Whether a primitive blocks a ray.
+#[inline]
+pub(crate) fn blocks<G: Geometry>(geometry: &G, ray: &PreparedRay, primitive: u32) -> bool {
+    hit(geometry, ray, primitive).is_some()
+}
+
+/// The closest hit so far: the least distance, and of equal ones the lowest primitive number.
+pub(crate) struct Nearest {
+    best: Option<Hit>,
+    t_max: f32,
+}
+
+impl Nearest {
+    /// Nothing found yet.
+    #[inline]
+    pub(crate) fn new(ray: &PreparedRay) -> Self {
+        Self { best: None, t_max: ray.t_max }
+    }
+
+    /// Tests a primitive. Testing it twice changes nothing.
+    #[inline]
+    pub(crate) fn test<G: Geometry>(&mut self, geometry: &G, ray: &PreparedRay, primitive: u32) {
+        let Some(hit) = hit(geometry, ray, primitive) else { return };
+        let wins = |best: Hit| hit.t < best.t || (hit.t == best.t && primitive < best.primitive);
+        if self.best.is_none_or(wins) {
+            self.best = Some(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
+            self.t_max = hit.t;
+        }
+    }
+
+    /// Where looking further is of no use: the ray's end, later the closest hit so far. What begins exactly there may still
+    /// hold an equally near hit of a lower number.
+    #[inline]
+    pub(crate) fn t_max(&self) -> f32 {
+        self.t_max
+    }
+
+    /// The closest hit of all that was tested.
+    #[inline]
+    pub(crate) fn into_hit(self) -> Option<Hit> {
+        self.best
+    }
+}
