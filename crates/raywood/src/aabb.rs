@@ -41,6 +41,12 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// The part that both boxes share; empty if there is none.
+    #[inline]
+    pub fn intersection(self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
     /// Whether the box holds no point.
     #[inline]
     pub fn is_empty(&self) -> bool {

@@ -36,6 +36,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
+        match self.in_second(primitive) {
+            None => self.first.clipped_bounds(primitive, cell),
+            Some(primitive) => self.second.clipped_bounds(primitive, cell),
+        }
+    }
+
     #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         match self.in_second(primitive) {

@@ -43,6 +43,14 @@ pub trait Geometry: Sync {
     /// can report.
     fn bounds(&self, primitive: u32) -> Aabb;
 
+    /// A box around the part of the primitive that lies in `cell`; empty if no part does. For structures that divide space.
+    ///
+    /// It must lie within the primitive's bounds and hold every point that [`intersect`](Self::intersect) can report in the
+    /// cell. The default is the overlap of the primitive's bounds with the cell; a tighter box makes tighter structures.
+    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
+        self.bounds(primitive).intersection(cell)
+    }
+
     /// The nearest hit of the ray with this primitive at `ray.t_min <= t < ray.t_max`, if any.
     ///
     /// `t` must be a number and inside the interval; a caller may rely on it.
@@ -61,6 +69,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
 
     fn bounds(&self, primitive: u32) -> Aabb {
         (**self).bounds(primitive)
+    }
+
+    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
+        (**self).clipped_bounds(primitive, cell)
     }
 
     #[inline(always)]
