@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use raywood::Vec3;
+use raywood::{StructureKind, Vec3};
 
 /// A point or direction, `X,Y,Z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,14 @@ impl FromStr for Size {
             _ => Err(complaint()),
         }
     }
+}
+
+/// The name of an acceleration structure.
+pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
+    StructureKind::from_name(text).ok_or_else(|| {
+        let names: Vec<_> = StructureKind::ALL.iter().map(|kind| kind.name()).collect();
+        format!("expected one of {}", names.join(", "))
+    })
 }
 
 /// A vertical field of view in degrees, between 0 and 180.

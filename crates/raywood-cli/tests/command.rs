@@ -67,7 +67,7 @@ fn every_builtin_renders_to_a_picture() {
         let report = json(&output);
         assert_eq!(stderr(&output), "", "{name}: silent when piped");
         assert_eq!(report["rays"]["primary"], 96 * 60);
-        assert!(report["tree"]["nodes"].as_u64().expect("a number") > 1);
+        assert!(report["structure"]["nodes"].as_u64().expect("a number") > 1);
         let picture = Picture::read(&folder.join("out.png")).expect("a PNG");
         assert_eq!((picture.width, picture.height), (96, 60));
         assert!(picture.colors() > 200, "{name}: only {} colours", picture.colors());
@@ -105,6 +105,24 @@ fn the_camera_and_lights_can_be_overridden() {
     assert_ne!(front, picture("turned", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --up -1,0,0"));
     assert_ne!(front, picture("wide", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --fov 80"));
     assert_ne!(front, picture("lit", "--eye 0.3,0.3,2 --target 0.3,0.3,0 --light 2,2,2"));
+}
+
+#[test]
+fn the_picture_does_not_depend_on_the_structure() {
+    let folder = folder("structures");
+    let said = stderr(&run(&folder, "render --structure hedge"));
+    let names = said.split("expected one of ").nth(1).expect("the names").lines().next();
+    let names: Vec<_> = names.expect("the names").split(", ").collect();
+    assert!(names.len() >= 5 && names.contains(&"bvh-sah-binned"), "{names:?}");
+    let mut pictures = names.iter().map(|name| {
+        let arguments =
+            format!("render builtin:sphereflake?depth=2 --size 96x60 --structure {name}");
+        let report = json(&run(&folder, &format!("{arguments} --json")));
+        assert_eq!(report["structure"]["name"], *name);
+        Picture::read(&folder.join("render.png")).expect("a PNG")
+    });
+    let first = pictures.next().expect("a picture");
+    assert!(pictures.all(|picture| picture == first));
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
 
-use raywood::{Aabb, BuildError, Bvh, Geometry, Joined, Spheres, TriangleMesh, Vec3};
+use raywood::{
+    Aabb, BuildError, BuildOptions, Geometry, Joined, Spheres, Structure, StructureKind,
+};
+use raywood::{TriangleMesh, Vec3};
 use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
 
 /// All surfaces of a scene: first its triangles, then its spheres.
@@ -9,7 +12,8 @@ pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
 /// A scene made ready for rays. Borrows the scene, which therefore cannot change meanwhile.
 pub struct PreparedScene<'a> {
     scene: &'a Scene,
-    bvh: Bvh<Surfaces<'a>>,
+    structure: Structure<Surfaces<'a>>,
+    bounds: Aabb,
     materials: Vec<SurfaceMaterial>,
     triangle_count: u32,
     axes: Axes,
@@ -17,16 +21,26 @@ pub struct PreparedScene<'a> {
 }
 
 impl<'a> PreparedScene<'a> {
-    /// Builds the structure over the scene's surfaces, on the threads of the current rayon pool.
+    /// Builds the default structure over the scene's surfaces: see [`with_structure`](Self::with_structure).
+    ///
+    /// # Errors
+    ///
+    /// The structure cannot be built.
+    pub fn new(scene: &'a Scene) -> Result<Self, BuildError> {
+        Self::with_structure(scene, StructureKind::default())
+    }
+
+    /// Builds a structure of the given kind over the scene's surfaces, on the threads of the current rayon pool. The picture does not
+    /// depend on the kind.
     ///
     /// A surface whose material number does not exist gets the default material.
     ///
     /// # Errors
     ///
     /// The structure cannot be built.
-    pub fn new(scene: &'a Scene) -> Result<Self, BuildError> {
+    pub fn with_structure(scene: &'a Scene, kind: StructureKind) -> Result<Self, BuildError> {
         let surfaces = Joined { first: &scene.mesh.triangles, second: &scene.spheres };
-        let bvh = Bvh::build(surfaces)?;
+        let structure = Structure::build(kind, surfaces, &BuildOptions::default())?;
         // The default comes last, for the surfaces without a material.
         let materials: Vec<_> = scene
             .materials
@@ -36,7 +50,8 @@ impl<'a> PreparedScene<'a> {
             .collect();
         let mut prepared = Self {
             scene,
-            bvh,
+            structure,
+            bounds: scene.bounds(),
             materials,
             triangle_count: scene.mesh.triangles.len() as u32,
             axes: scene.axes(),
@@ -53,7 +68,7 @@ impl<'a> PreparedScene<'a> {
 
     /// The box around all surfaces; empty if there are none.
     pub fn bounds(&self) -> Aabb {
-        self.bvh.tree().bounds()
+        self.bounds
     }
 
     /// Which way is up, and two level directions.
@@ -68,8 +83,8 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The structure over the scene's surfaces.
-    pub fn bvh(&self) -> &Bvh<Surfaces<'a>> {
-        &self.bvh
+    pub fn structure(&self) -> &Structure<Surfaces<'a>> {
+        &self.structure
     }
 
     /// The number of the triangle that a primitive is, or else that of the sphere.
@@ -108,10 +123,10 @@ impl<'a> PreparedScene<'a> {
             return Vec::new();
         }
         let mut bounds = vec![Aabb::EMPTY; self.materials.len()];
-        for primitive in 0..self.bvh.geometry().len() as u32 {
+        for primitive in 0..self.structure.geometry().len() as u32 {
             let index = self.material_index(primitive);
             if self.materials[index].transmissive {
-                bounds[index] = bounds[index].union(self.bvh.geometry().bounds(primitive));
+                bounds[index] = bounds[index].union(self.structure.geometry().bounds(primitive));
             }
         }
         bounds.retain(|b| !b.is_empty());

@@ -27,7 +27,7 @@ impl<'a> Surface<'a> {
     /// The surface at a hit of `ray`.
     #[inline]
     pub(crate) fn new(prepared: &'a PreparedScene<'_>, ray: &Ray, hit: &Hit) -> Self {
-        let point = prepared.bvh().surface_point(ray, hit);
+        let point = prepared.structure().surface_point(ray, hit);
         let material = prepared.material_of(hit.primitive);
         let outside = ray.direction.dot(point.normal) <= 0.0;
         let geometric_normal = if outside { point.normal } else { -point.normal };

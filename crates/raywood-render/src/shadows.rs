@@ -32,17 +32,17 @@ pub(crate) fn visibility(
     let nothing_transparent =
         opaque || !prepared.transmissive_bounds().iter().any(|bounds| may_cross(&ray, bounds));
     if nothing_transparent {
-        return if prepared.bvh().occluded(&ray) { Rgb::ZERO } else { Rgb::ONE };
+        return if prepared.structure().occluded(&ray) { Rgb::ZERO } else { Rgb::ONE };
     }
 
     let mut share = Rgb::ONE;
     for _ in 0..MOST_CROSSINGS {
-        let Some(hit) = prepared.bvh().intersect(&ray) else { return share };
+        let Some(hit) = prepared.structure().intersect(&ray) else { return share };
         let material = prepared.material_of(hit.primitive);
         if !material.transmissive {
             return Rgb::ZERO;
         }
-        let surface = prepared.bvh().surface_point(&ray, &hit);
+        let surface = prepared.structure().surface_point(&ray, &hit);
         let length = ray.direction.length();
         let cosine = ray.direction.dot(surface.normal) / length;
         share = share * filter(material, cosine, hit.t * length);

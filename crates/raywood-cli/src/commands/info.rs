@@ -1,17 +1,18 @@
-//! `raywood info`: what is in a scene, and what its tree is like.
+//! `raywood info`: what is in a scene, and what its structure is like.
 
-use raywood::{Geometry, StructureStats};
+use raywood::{Geometry, StructureKind, StructureStats};
 use raywood_render::PreparedScene;
 use raywood_scene::{LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
 
 use super::thread_pool;
 use crate::failure::Failure;
+use crate::parse::structure_kind;
 use crate::print::{self, thousands};
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
 
-/// Tell what a scene holds, and what its tree is like.
+/// Tell what a scene holds, and what its structure is like.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
@@ -19,6 +20,12 @@ pub(crate) struct Args {
     /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
     #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
+
+    /// Acceleration structure to build
+    ///
+    /// A wrong name is answered with those that exist.
+    #[arg(long, value_name = "NAME", value_parser = structure_kind)]
+    structure: Option<StructureKind>,
 
     /// Refuse what is otherwise mended with a warning
     #[arg(long)]
@@ -34,18 +41,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let prepared =
-        during_step("building the tree", || pool.install(|| PreparedScene::new(&loaded.scene)))
-            .map_err(Failure::bad_input)?;
-    let stats = prepared.bvh().stats();
+    let kind = args.structure.unwrap_or_default();
+    let prepare = || PreparedScene::with_structure(&loaded.scene, kind);
+    let prepared = during_step("building the structure", || pool.install(prepare))
+        .map_err(Failure::bad_input)?;
+    let stats = prepared.structure().stats();
     if args.json {
-        print::json(&as_json(&loaded, &stats))
+        print::json(&as_json(&loaded, kind, &stats))
     } else {
-        print::result(&as_text(&loaded, &stats))
+        print::result(&as_text(&loaded, kind, &stats))
     }
 }
 
-fn as_text(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> String {
+fn as_text(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &StructureStats) -> String {
     let mesh = &scene.mesh;
     let bounds = scene.bounds();
     let point = |p: raywood::Vec3| format!("({}, {}, {})", p.x, p.y, p.z);
@@ -68,7 +76,7 @@ fn as_text(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> String {
     } else {
         line("bounds", &format!("{} to {}", point(bounds.min), point(bounds.max)));
     }
-    line("tree", &stats.to_string());
+    line("structure", &format!("{}: {stats}", kind.name()));
 
     line("materials", &scene.materials.len().to_string());
     for material in &scene.materials {
@@ -137,7 +145,7 @@ fn describe(material: &Material) -> String {
     if parts.is_empty() { "black".to_owned() } else { parts.join(", ") }
 }
 
-fn as_json(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> Value {
+fn as_json(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &StructureStats) -> Value {
     let bounds = scene.bounds();
     json!({
         "scene": scene.name,
@@ -157,7 +165,7 @@ fn as_json(Loaded { scene, time }: &Loaded, stats: &StructureStats) -> Value {
             "up": camera.up.to_array(), "fov_y_degrees": camera.fov_y,
         })).collect::<Vec<_>>(),
         "warnings": scene.warnings,
-        "tree": tree(stats),
+        "structure": structure(kind, stats),
     })
 }
 
@@ -172,10 +180,12 @@ fn materials(scene: &Scene) -> Vec<Value> {
     scene.materials.iter().map(one).collect()
 }
 
-/// Statistics of a tree, as every command prints them for machines.
-pub(crate) fn tree(stats: &StructureStats) -> Value {
+/// Statistics of a structure, as every command prints them for machines.
+pub(crate) fn structure(kind: StructureKind, stats: &StructureStats) -> Value {
     json!({
+        "name": kind.name(),
         "primitives": stats.primitives,
+        "references": stats.references,
         "nodes": stats.nodes,
         "leaves": stats.leaves,
         "depth": stats.depth,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use raywood::StructureStats;
+use raywood::{StructureKind, StructureStats};
 use raywood_render::{
     PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, default_view, render,
     write_png,
@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use super::{info, thread_pool};
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::{Point, PointLight, Size, field_of_view};
+use crate::parse::{Point, PointLight, Size, field_of_view, structure_kind};
 use crate::print::{self, thousands};
 use crate::progress_bar::{during_rendering, during_step};
 use crate::scene_source::{self, Loaded};
@@ -90,6 +90,12 @@ pub(crate) struct Args {
     #[arg(long)]
     opaque_shadows: bool,
 
+    /// Acceleration structure to trace with
+    ///
+    /// The picture is the same with each; times and memory differ. A wrong name is answered with those that exist.
+    #[arg(long, value_name = "NAME", value_parser = structure_kind)]
+    structure: Option<StructureKind>,
+
     /// Refuse what is otherwise mended
     ///
     /// Such as vertices that are not a number, which are otherwise dropped with the triangles that use them.
@@ -105,7 +111,8 @@ pub(crate) struct Args {
 struct Report<'a> {
     args: &'a Args,
     scene: &'a Scene,
-    tree: StructureStats,
+    kind: StructureKind,
+    structure: StructureStats,
     load: Duration,
     build: Duration,
     render: RenderStats,
@@ -131,8 +138,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     loaded.print_warnings();
     let Loaded { mut scene, time: load } = loaded;
     scene.up = args.up.map(|point| point.0).or(scene.up);
+    let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepared = during_step("building the tree", || pool.install(|| PreparedScene::new(&scene)))
+    let prepare = || PreparedScene::with_structure(&scene, kind);
+    let prepared = during_step("building the structure", || pool.install(prepare))
         .map_err(Failure::bad_input)?;
     let build = started.elapsed();
 
@@ -150,8 +159,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output.write(|writer| write_png(&image, writer))?;
     let write = started.elapsed();
 
-    let tree = prepared.bvh().stats();
-    let report = Report { args, scene: &scene, tree, load, build, render: stats, write };
+    let structure = prepared.structure().stats();
+    let report = Report { args, scene: &scene, kind, structure, load, build, render: stats, write };
     if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
 }
 
@@ -212,7 +221,7 @@ fn no_such_camera(wanted: &str, scene: &Scene) -> Failure {
 
 impl Report<'_> {
     fn as_text(&self) -> String {
-        let Self { args, scene, tree, load, build, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, render, write } = self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
         let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
@@ -224,12 +233,10 @@ impl Report<'_> {
         };
         let triangles = thousands(scene.mesh.triangles.triangles().len() as u64);
         line("load", format!("{}   {triangles} triangles{spheres}", seconds(load)));
-        let megabytes = tree.bytes as f64 / 1e6;
-        let nodes = thousands(tree.nodes as u64);
-        line(
-            "build",
-            format!("{}   {nodes} nodes, depth {}, {megabytes:.1} MB", seconds(build), tree.depth),
-        );
+        let megabytes = structure.bytes as f64 / 1e6;
+        let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
+        let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
+        line("build", format!("{}   {}, {size}", seconds(build), kind.name()));
         let [primary, shadow, reflection, refraction] =
             [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
         line(
@@ -258,7 +265,7 @@ impl Report<'_> {
     }
 
     fn as_json(&self) -> Value {
-        let Self { args, scene, tree, load, build, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, render, write } = self;
         let rays = render.rays;
         json!({
             "scene": args.scene,
@@ -285,7 +292,7 @@ impl Report<'_> {
                 "total": rays.total(),
             },
             "million_rays_per_second": render.million_rays_per_second(),
-            "tree": info::tree(tree),
+            "structure": info::structure(*kind, structure),
         })
     }
 }

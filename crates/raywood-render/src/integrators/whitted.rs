@@ -54,7 +54,7 @@ impl Tracer<'_> {
     /// The light that comes back along a ray (its direction is of unit length).
     fn radiance(&mut self, ray: &Ray, path: &Path) -> Rgb {
         let frame = self.frame;
-        let Some(hit) = frame.scene.bvh().intersect(ray) else {
+        let Some(hit) = frame.scene.structure().intersect(ray) else {
             return frame.scene.background(ray.direction);
         };
         let surface = Surface::new(frame.scene, ray, &hit);

@@ -77,7 +77,7 @@ fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing)
 fn detail_bounds(prepared: &PreparedScene<'_>, bounds: &Aabb) -> Option<Aabb> {
     const MOST_SAMPLES: usize = 1 << 14;
     const FEWEST: usize = 500;
-    let surfaces = prepared.bvh().geometry();
+    let surfaces = prepared.structure().geometry();
     if surfaces.len() < FEWEST {
         return None;
     }
@@ -112,7 +112,7 @@ fn visible_share(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -
             let ray = rays.ray(column as f32 + 0.5, row as f32 + 0.5);
             let Some(entry) = entry(bounds, ray.origin, ray.direction) else { continue };
             meet += 1;
-            visible += u32::from(!prepared.bvh().occluded(&ray.with_interval(0.0, entry)));
+            visible += u32::from(!prepared.structure().occluded(&ray.with_interval(0.0, entry)));
         }
     }
     visible as f32 / meet.max(1) as f32

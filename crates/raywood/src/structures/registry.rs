@@ -98,6 +98,13 @@ structures! {
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
 }
 
+impl Default for StructureKind {
+    /// The structure that is good for everything.
+    fn default() -> Self {
+        Self::BvhSahBinned
+    }
+}
+
 impl StructureKind {
     /// The kind of a name.
     pub fn from_name(name: &str) -> Option<Self> {
