@@ -61,6 +61,7 @@ impl Ray {
             && self.t_min < self.t_max
     }
 
-    /// Directions shorter than this count as zero: their reciprocal would overflow. It is the smallest normal number.
-    pub const SHORTEST_DIRECTION: f32 = f32::MIN_POSITIVE;
+    /// Directions whose largest coordinate is less than this count as zero. Coordinates whose reciprocal overflows (below 3e-39) are then
+    /// too small beside the largest to matter.
+    pub const SHORTEST_DIRECTION: f32 = 1e-30;
 }

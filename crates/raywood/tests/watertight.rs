@@ -1,6 +1,6 @@
 //! No ray gets through a closed mesh, and none that starts on a surface hits it again.
 
-use raywood::{Bvh, Ray, TriangleMesh, Vec3};
+use raywood::{BuildOptions, Bvh, Ray, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, shapes};
 
 /// Closed meshes around a point that is well inside of each, with their size.
@@ -167,4 +167,44 @@ fn spawned_rays_leave_slivers() {
         }
     }
     assert!(spawned > 200_000, "only {spawned} rays");
+}
+
+/// A ray inside the box from `-half` to `half`, from near one of its long edges to a point on a face very near an edge.
+fn towards_an_edge(rng: &mut Rng, half: Vec3, nearness: f32) -> Ray {
+    let z = rng.range(-0.5, 0.5) * half.z.min(10.0);
+    let beside = |rng: &mut Rng| nearness * rng.range(0.1, 1.0);
+    let from = Vec3::new(half.x - beside(rng), beside(rng) - half.y, z);
+    let off_the_edge = nearness * 10f32.powf(rng.range(-7.0, 0.0));
+    let to_z = z + nearness * rng.range(-3.0, 3.0);
+    let target = match rng.below(2) {
+        0 => Vec3::new(half.x, off_the_edge - half.y, to_z),
+        _ => Vec3::new(half.x - off_the_edge, -half.y, to_z),
+    };
+    Ray::new(from, target - from)
+}
+
+#[test]
+fn no_ray_leaks_beside_an_edge_of_large_triangles() {
+    let mut rng = Rng::new(5);
+    for length in [1.0, 10.0, 1e3, 1e6] {
+        let half = Vec3::new(1.0, 1.0, length);
+        for cells in [1, 10] {
+            let mesh = shapes::grid_box(cells, -half, half);
+            let trees = [1, 8, 10_000].map(|max_leaf_size| {
+                let options = BuildOptions { max_leaf_size, ..Default::default() };
+                Bvh::build_with(&mesh, &options).expect("it builds")
+            });
+            for nearness in [1.5, 0.1, 1e-3, 1e-5] {
+                for _ in 0..4000 {
+                    let ray = towards_an_edge(&mut rng, half, nearness);
+                    let hit = trees[0].intersect(&ray);
+                    assert!(hit.is_some(), "length {length}, {cells} cells: {ray:?} leaks");
+                    for tree in &trees {
+                        assert_eq!(tree.intersect(&ray), hit, "length {length}: {ray:?}");
+                        assert!(tree.occluded(&ray), "length {length}: {ray:?}");
+                    }
+                }
+            }
+        }
+    }
 }

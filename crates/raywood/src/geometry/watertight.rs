@@ -1,15 +1,20 @@
-//! The watertight ray-triangle test of Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
+//! The watertight ray-triangle test: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, with a filter.
 //!
-//! The triangle is moved so that the ray's origin is at zero and sheared so that the ray runs along z. What is left
-//! is a question in the plane: on which side of each edge lies the point zero? Two triangles that share an edge
-//! compute the same two products for it, so they never both say "outside". `docs/numerics.md` has the argument, and
-//! derives the bounds.
+//! The triangle is moved so that the ray's origin is at zero and sheared so that the ray runs along z. What is left is a question in the
+//! plane: on which side of each edge lies the point zero? Single precision answers where its rounding errors are certainly smaller than
+//! the answer, double precision elsewhere. `docs/numerics.md` derives the bounds and tells why no ray slips through.
 
 use super::{PreparedRay, PrimitiveHit};
 use crate::Vec3;
 
 /// Outside of this range of determinants single precision may have lost digits to underflow or come too near to overflow.
 const TRUSTED_DETERMINANTS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
+
+/// An edge function's rounding error is at most this times the triangle's reach across the ray times its reach in all.
+const EDGE_ERROR: f32 = 8.0 * f32::EPSILON;
+
+/// The depth's rounding error is at most this times the reach along the ray, in a triangle of sound shape.
+const DEPTH_ERROR: f32 = 4.0 * f32::EPSILON;
 
 /// A distance that single precision may have wrong by more than this share of itself is computed again in double.
 const DISTANCE_TOLERANCE: f32 = 1.0 / 8192.0;
@@ -22,26 +27,29 @@ pub(super) fn intersect_triangle(
     p1: Vec3,
     p2: Vec3,
 ) -> Option<PrimitiveHit> {
-    // Move and shear the vertices. Each depends on its vertex and the ray alone, so neighbours agree on it.
+    // Move and shear the vertices.
     let a = shear(ray, p0);
     let b = shear(ray, p1);
     let c = shear(ray, p2);
 
-    // Twice the signed areas that the origin spans with each edge. The sign of a difference of two rounded products
-    // is right unless it is zero, for rounding never swaps the order of two numbers.
+    // Twice the signed areas that the origin spans with each edge: all of one sign if it lies inside.
     let e0 = c[0] * b[1] - c[1] * b[0];
     let e1 = a[0] * c[1] - a[1] * c[0];
     let e2 = b[0] * a[1] - b[1] * a[0];
-    if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) && (e0 > 0.0 || e1 > 0.0 || e2 > 0.0) {
+    let least = smaller(smaller(e0, e1), e2);
+    let greatest = larger(larger(e0, e1), e2);
+
+    // Believe the signs of what is larger than its error; NaN is believed nothing.
+    let across = [a[0], a[1], b[0], b[1], c[0], c[1]].into_iter().fold(0.0, larger_abs);
+    let along = [a[2], b[2], c[2]].into_iter().fold(0.0, larger_abs);
+    let edge_error = EDGE_ERROR * across * (across + along) + f32::MIN_POSITIVE;
+    if least < -edge_error && greatest > edge_error {
         return None;
     }
-
-    // Where single precision cannot tell the side (a zero, an overflow, digits lost to underflow), double precision can.
     let determinant = e0 + e1 + e2;
-    let no_edge_is_zero = e0 != 0.0 && e1 != 0.0 && e2 != 0.0;
-    if !(no_edge_is_zero && TRUSTED_DETERMINANTS.contains(&determinant.abs())) {
-        let (u, v) = weights_in_double(a, b, c)?;
-        return hit_in_double(ray, [p0, p1, p2], u, v);
+    let certain = least > edge_error || greatest < -edge_error;
+    if !(certain && TRUSTED_DETERMINANTS.contains(&determinant.abs())) {
+        return intersect_in_double(ray, [p0, p1, p2]);
     }
     let reciprocal = 1.0 / determinant;
     let (w, u, v) = (e0 * reciprocal, e1 * reciprocal, e2 * reciprocal);
@@ -49,14 +57,24 @@ pub(super) fn intersect_triangle(
 
     // In slivers, at grazing angles and on large triangles nearby, rounding errors of the weights grow with the triangle's
     // reach across the ray, and z may be far off, even on the wrong side of the origin.
-    let across = [a[0], a[1], b[0], b[1], c[0], c[1]].into_iter().fold(0.0, larger_abs);
-    let along = [a[2], b[2], c[2]].into_iter().fold(0.0, larger_abs);
-    let z_error = 4.0 * f32::EPSILON * along * (across * across * reciprocal.abs() + 1.0);
+    let z_error = DEPTH_ERROR * along * (across * across * reciprocal.abs() + 1.0);
     if z_error > DISTANCE_TOLERANCE * z.abs() {
         return hit_in_double(ray, [p0, p1, p2], u, v);
     }
     let t = z * ray.shear[2];
     ray.accepts(t).then_some(PrimitiveHit { t, u, v })
+}
+
+/// The smaller of two numbers, as one instruction finds it.
+#[inline]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, as one instruction finds it.
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// The larger of a positive number and the absolute value of another.
@@ -77,22 +95,31 @@ fn shear(ray: &PreparedRay, vertex: Vec3) -> [f32; 3] {
     [x - ray.shear[0] * z, y - ray.shear[1] * z, z]
 }
 
-/// The barycentric weights of the second and third vertex, from the vertices in the ray's frame, or `None` if the ray passes
-/// outside. In double precision the products are exact and so the signs are.
+/// The same test in double precision: from the vertices as they are, so that what single precision rounded away is there again.
+///
+/// Each moved and sheared vertex depends on the vertex and the ray alone, so neighbours agree on it, and each edge function is a
+/// difference of two products whose order rounding cannot swap; the neighbour has the same two products the other way round.
 #[cold]
 #[inline(never)]
-fn weights_in_double(a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<(f32, f32)> {
-    let [a, b, c] = [a, b, c].map(|p| p.map(f64::from));
+fn intersect_in_double(ray: &PreparedRay, corners: [Vec3; 3]) -> Option<PrimitiveHit> {
+    let [x, y, z] = ray.axes;
+    let [dx, dy, dz] = [x, y, z].map(|axis| f64::from(ray.direction[axis]));
+    let [a, b, c] = corners.map(|corner| {
+        let p = |axis: usize| f64::from(corner[axis]) - f64::from(ray.origin[axis]);
+        [p(x) - dx / dz * p(z), p(y) - dy / dz * p(z)]
+    });
     let e0 = c[0] * b[1] - c[1] * b[0];
     let e1 = a[0] * c[1] - a[1] * c[0];
     let e2 = b[0] * a[1] - b[1] * a[0];
     if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) && (e0 > 0.0 || e1 > 0.0 || e2 > 0.0) {
         return None;
     }
-    // Zero: the triangle is seen edge-on or has no area. NaN: coordinates too large even for this.
+    // Zero: the triangle is seen edge-on or has no area.
     let determinant = e0 + e1 + e2;
-    let sound = determinant.abs() > 0.0 && determinant.is_finite();
-    sound.then(|| ((e1 / determinant) as f32, (e2 / determinant) as f32))
+    if determinant == 0.0 {
+        return None;
+    }
+    hit_in_double(ray, corners, (e1 / determinant) as f32, (e2 / determinant) as f32)
 }
 
 /// The hit of a ray that passes inside a triangle, its distance from the plane's equation in double precision.
