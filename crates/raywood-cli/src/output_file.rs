@@ -27,6 +27,12 @@ impl OutputFile {
         if path.is_dir() {
             return Err(complain(&"it is a directory, expected the name of a file"));
         }
+        if path.exists() && !path.is_file() {
+            return Err(complain(&"something is there that is not a file"));
+        }
+        if path.is_symlink() && !path.exists() {
+            return Err(complain(&"it is a link that leads nowhere"));
+        }
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let Some(file_name) = target.file_name() else {
             return Err(complain(&"it is not the name of a file"));
@@ -64,6 +70,10 @@ impl OutputFile {
     ) -> Result<(), Failure> {
         let guard = DeleteOnInterrupt::new(&self.temporary);
         let written = File::create(&self.temporary).and_then(|file| {
+            // Who may read the old file may read the new one, and nobody else.
+            if let Ok(old) = fs::metadata(&self.target) {
+                file.set_permissions(old.permissions())?;
+            }
             let mut writer = BufWriter::new(file);
             content(&mut writer)?;
             writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()

@@ -34,15 +34,23 @@ pub(crate) fn load(name: &str, strict: bool) -> Result<Loaded, Failure> {
         None => {
             let path = Path::new(name);
             load_file(path, &LoadOptions::default().with_strict(strict)).map_err(|error| {
-                let plain_name = name.split('?').next().unwrap_or_default();
-                match builtins().iter().any(|b| b.name == plain_name) && !path.exists() {
-                    true => {
-                        Failure::BadInput(format!("{error}; did you mean {BUILTIN_PREFIX}{name}?"))
-                    }
-                    false => Failure::bad_input(error),
-                }
+                let hint = if path.exists() { String::new() } else { hint_at_builtins(name) };
+                Failure::BadInput(format!("{error}{hint}"))
             })?
         }
     };
     Ok(Loaded { scene, time: started.elapsed() })
+}
+
+/// What follows the error about a file that does not exist: the built-in scene that was meant, or all of them.
+fn hint_at_builtins(name: &str) -> String {
+    let plain_name = name.split('?').next().unwrap_or_default();
+    if builtins().iter().any(|scene| scene.name == plain_name) {
+        return format!("; did you mean {BUILTIN_PREFIX}{name}?");
+    }
+    if Path::new(name).components().count() > 1 {
+        return String::new();
+    }
+    let names: Vec<_> = builtins().iter().map(|s| format!("{BUILTIN_PREFIX}{}", s.name)).collect();
+    format!("; the built-in scenes are {}", names.join(", "))
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::camera_rays::CameraError;
 use crate::integrators::{INTEGRATORS, Integrator};
+use crate::tiles::TILE_SIZE;
 
 /// What a rendering is asked for.
 #[derive(Clone, Debug)]
@@ -41,8 +42,8 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// The most pixels of an image: about what a machine of 4 GiB can hold while it renders.
-    pub const MOST_PIXELS: u64 = 1 << 27;
+    /// The most memory that an image may take while it is rendered: 2^27 pixels, less for very thin ones.
+    pub const MOST_BYTES: u64 = 24 << 27;
     /// The most rays per pixel.
     pub const MOST_SAMPLES: u32 = 1 << 20;
     /// The greatest depth. It bounds the stack that the recursion needs.
@@ -50,9 +51,11 @@ impl RenderOptions {
     /// The smallest cut-off. With the depth it bounds the rays that one primary ray can cause.
     pub const SMALLEST_CUTOFF: f32 = 1e-5;
 
-    /// The largest memory that rendering the image takes, in bytes, beside the scene: tiles and image, 12 bytes a pixel.
+    /// The largest memory that rendering the image takes, in bytes, beside the scene: whole tiles and the image, 12 bytes a pixel.
     pub fn memory_bytes(&self) -> u64 {
-        24 * u64::from(self.width) * u64::from(self.height)
+        let in_tiles = |size: u32| u64::from(size.div_ceil(TILE_SIZE)) * u64::from(TILE_SIZE);
+        let image = u64::from(self.width) * u64::from(self.height);
+        12 * (image + in_tiles(self.width).saturating_mul(in_tiles(self.height)))
     }
 
     /// Whether the options make sense.
@@ -65,7 +68,7 @@ impl RenderOptions {
         if width == 0 || height == 0 {
             return Err(RenderError::EmptyImage { width, height });
         }
-        if u64::from(width) * u64::from(height) > Self::MOST_PIXELS {
+        if self.memory_bytes() > Self::MOST_BYTES {
             return Err(RenderError::ImageTooLarge { width, height, bytes: self.memory_bytes() });
         }
         if !(1..=Self::MOST_SAMPLES).contains(&self.samples) {
@@ -94,7 +97,7 @@ pub enum RenderError {
         /// Rows asked for.
         height: u32,
     },
-    /// More pixels than [`RenderOptions::MOST_PIXELS`].
+    /// It would take more than [`RenderOptions::MOST_BYTES`].
     ImageTooLarge {
         /// Columns asked for.
         width: u32,
@@ -136,13 +139,11 @@ impl fmt::Display for RenderError {
                 write!(f, "an image of {width}x{height} pixels is empty: both must be at least 1")
             }
             Self::ImageTooLarge { width, height, bytes } => {
-                let most = RenderOptions::MOST_PIXELS;
                 write!(
                     f,
-                    "an image of {width}x{height} pixels would take {:.1} GiB of memory: at most {most} pixels ({:.1} \
-                     GiB) are allowed",
+                    "an image of {width}x{height} pixels would take {:.1} GiB of memory: at most {:.1} GiB are allowed",
                     gib(*bytes),
-                    gib(24 * most)
+                    gib(RenderOptions::MOST_BYTES)
                 )
             }
             Self::OutOfMemory { bytes } => {

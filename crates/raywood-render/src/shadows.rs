@@ -89,13 +89,15 @@ pub(crate) fn transmittance(absorption: Rgb, length: f32) -> Rgb {
 #[inline]
 fn may_cross(ray: &Ray, bounds: &Aabb) -> bool {
     let (mut near, mut far) = (ray.t_min, ray.t_max);
+    let reach = (bounds.min - ray.origin).abs().max((bounds.max - ray.origin).abs());
+    let margin = 16.0 * f32::EPSILON * reach.max_element();
     for axis in 0..3 {
         let reciprocal = 1.0 / ray.direction[axis];
-        let a = (bounds.min[axis] - ray.origin[axis]) * reciprocal;
-        let b = (bounds.max[axis] - ray.origin[axis]) * reciprocal;
+        let a = (bounds.min[axis] - margin - ray.origin[axis]) * reciprocal;
+        let b = (bounds.max[axis] + margin - ray.origin[axis]) * reciprocal;
         // NaN (in the plane of a face, along it) leaves the interval as it is.
-        near = near.max(a.min(b) * (1.0 - 4.0 * f32::EPSILON));
-        far = far.min(a.max(b) * (1.0 + 4.0 * f32::EPSILON));
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
     }
     near <= far
 }

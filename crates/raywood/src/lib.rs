@@ -11,7 +11,7 @@
 //! if let Some(hit) = bvh.intersect(&ray) {                                   // the closest hit
 //!     let point = bvh.surface_point(&ray, &hit);
 //!     let light = [5.0, 5.0, 5.0];
-//!     let lit = !bvh.occluded(&point.spawn_towards(light.into()));           // any blocker, no epsilon to choose
+//!     let lit = !bvh.occluded(&point.spawn_towards(light));                  // any blocker, no epsilon to choose
 //!     println!("triangle {} at distance {}, lit: {lit}", hit.primitive, hit.t);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())

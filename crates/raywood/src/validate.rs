@@ -157,3 +157,121 @@ impl Bvh2 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structures::Node;
+    use crate::{BuildOptions, TriangleMesh, Vec3};
+
+    /// Eight triangles along x, in a tree with one in each leaf.
+    fn mesh_and_tree() -> (TriangleMesh, Bvh2) {
+        let corner = |i: u32, y: f32| Vec3::new(i as f32, y, 0.5 * y);
+        let positions = (0..8).flat_map(|i| [corner(i, 0.0), corner(i, 1.0), corner(i + 1, 0.0)]);
+        let triangles = (0..8).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let mesh = TriangleMesh::new(positions.collect(), triangles).expect("a mesh");
+        let options = BuildOptions { max_leaf_size: 1, ..Default::default() };
+        let tree = Bvh2::build(&mesh, &options).expect("a tree");
+        assert_eq!((tree.nodes().len(), tree.check(&mesh)), (15, Ok(())));
+        (mesh, tree)
+    }
+
+    /// The complaint about the tree after a change to its nodes and primitive indices.
+    fn complaint(change: impl Fn(&mut Vec<Node>, &mut Vec<u32>)) -> ValidationError {
+        let (mesh, tree) = mesh_and_tree();
+        let (mut nodes, mut indices) = (tree.nodes().to_vec(), tree.primitive_indices().to_vec());
+        change(&mut nodes, &mut indices);
+        Bvh2::from_parts(nodes, indices).check(&mesh).expect_err("it is noticed")
+    }
+
+    fn first_leaf(nodes: &[Node]) -> usize {
+        nodes.iter().position(Node::is_leaf).expect("a leaf")
+    }
+
+    #[test]
+    fn too_few_or_many_nodes_are_noticed() {
+        let is_count = |e| matches!(e, ValidationError::NodeCount { .. });
+        assert!(is_count(complaint(|nodes, _| nodes.clear())));
+        assert!(is_count(complaint(|nodes, _| nodes.push(nodes[0]))));
+        assert!(is_count(complaint(|_, indices| indices.truncate(7))));
+    }
+
+    #[test]
+    fn boxes_that_do_not_enclose_are_noticed() {
+        for axis in 0..3 {
+            let error = complaint(|nodes, _| {
+                let mut max = nodes[0].bounds().max.to_array();
+                max[axis] -= 0.125;
+                let bounds = Aabb::new(nodes[0].bounds().min, max);
+                nodes[0] = Node::interior(bounds, nodes[0].left_first());
+            });
+            assert!(matches!(error, ValidationError::NotEnclosed { node: 0, .. }), "{error}");
+        }
+        let error = complaint(|nodes, _| {
+            let leaf = first_leaf(nodes);
+            let flat = Aabb::new(nodes[leaf].bounds().min, nodes[leaf].bounds().min);
+            nodes[leaf] = Node::leaf(flat, nodes[leaf].left_first(), 1);
+        });
+        assert!(matches!(error, ValidationError::NotEnclosed { .. }), "{error}");
+    }
+
+    #[test]
+    fn wrong_references_are_noticed() {
+        let far = |e| matches!(e, ValidationError::BadReference { .. });
+        assert!(far(complaint(|nodes, _| nodes[0] = Node::interior(nodes[0].bounds(), 14))));
+        assert!(far(complaint(|nodes, _| {
+            let leaf = first_leaf(nodes);
+            nodes[leaf] = Node::leaf(nodes[leaf].bounds(), 8, 1);
+        })));
+        assert!(far(complaint(|_, indices| indices[0] = 8)));
+    }
+
+    #[test]
+    fn what_is_reached_twice_or_never_is_noticed() {
+        // A loop: the root as its own descendant's child.
+        let error = complaint(|nodes, _| {
+            let below = nodes[0].left_first() as usize;
+            let bounds = nodes[0].bounds();
+            nodes[below] = Node::interior(bounds, nodes[0].left_first());
+            nodes[0] = Node::interior(bounds, below as u32);
+        });
+        assert!(matches!(error, ValidationError::NodeReached { .. }), "{error}");
+
+        let error = complaint(|nodes, indices| {
+            indices[1] = indices[0];
+            let all = nodes[0].bounds();
+            for node in nodes {
+                *node = Node::leaf(all, node.left_first(), node.count());
+            }
+        });
+        assert!(matches!(error, ValidationError::PrimitiveReached { .. }), "{error}");
+
+        let error = complaint(|nodes, _| {
+            let all = nodes[0].bounds();
+            nodes[0] = Node::leaf(all, 0, 8);
+        });
+        assert!(matches!(error, ValidationError::NodeReached { times: 0, .. }), "{error}");
+    }
+
+    #[test]
+    fn trees_that_are_too_deep_are_noticed() {
+        // A comb: each right child is a leaf, each left child the next tooth.
+        let count = MAX_DEPTH + 2;
+        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let mesh = TriangleMesh::new(corners, vec![[0, 1, 2]; count]).expect("a mesh");
+        let bounds = mesh.total_bounds();
+        let mut nodes = vec![];
+        for tooth in 0..count as u32 - 1 {
+            nodes.push(Node::interior(bounds, 2 * tooth + 1));
+            if tooth > 0 {
+                let last = nodes.len() - 1;
+                nodes.insert(last + 1, Node::leaf(bounds, tooth, 1));
+            }
+        }
+        nodes.push(Node::leaf(bounds, 0, 1));
+        nodes.push(Node::leaf(bounds, count as u32 - 1, 1));
+        let tree = Bvh2::from_parts(nodes, (0..count as u32).collect());
+        let error = tree.check(&mesh).expect_err("it is noticed");
+        assert!(matches!(error, ValidationError::TooDeep { .. }), "{error}");
+    }
+}

@@ -1,6 +1,8 @@
 //! The invariants of trees: any input, any number of threads.
 
-use raywood::{Aabb, BuildError, BuildOptions, Bvh, Geometry, Hit, Ray, TriangleMesh, Vec3};
+use raywood::{
+    Aabb, BuildError, BuildOptions, Bvh, Counts, Geometry, Hit, Ray, TriangleMesh, Vec3,
+};
 use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
 use raywood_testkit::{nasty, shapes};
 
@@ -167,4 +169,30 @@ fn bad_meshes_are_refused() {
             "2 vertices are NaN or infinite, the first of them is vertex 1"
         );
     }
+}
+
+#[test]
+fn the_probe_counts_what_is_tested() {
+    let mesh = shapes::soup(500, 0.1, 3);
+    let whole = BuildOptions { max_leaf_size: usize::MAX, node_cost: 1e30, ..Default::default() };
+    let leaf = Bvh::build_with(&mesh, &whole).expect("it builds");
+    let through = Ray::new([-5.0, 0.1, 0.2], [1.0, 0.0, 0.0]);
+    let beside = Ray::new([-5.0, 9.0, 0.2], [1.0, 0.0, 0.0]);
+
+    // One leaf: its box and, if that is hit, all triangles.
+    let mut counts = Counts::default();
+    leaf.intersect_probed(&through, &mut counts);
+    assert_eq!(counts, Counts { boxes: 1, primitives: 500 });
+    leaf.intersect_probed(&beside, &mut counts);
+    assert_eq!(counts, Counts { boxes: 2, primitives: 500 });
+    leaf.occluded_probed(&beside, &mut counts);
+    assert_eq!(counts, Counts { boxes: 3, primitives: 500 });
+
+    // A tree: boxes in pairs below the root's, and far fewer triangles; the same answer as without a probe.
+    let tree = Bvh::build(&mesh).expect("it builds");
+    let mut counts = Counts::default();
+    assert_eq!(tree.intersect_probed(&through, &mut counts), leaf.intersect(&through));
+    assert!(counts.boxes % 2 == 1 && counts.boxes > 1, "{counts:?}");
+    assert!(counts.primitives < 250, "{counts:?}");
+    assert_eq!(tree.stats().bytes, 32 * tree.stats().nodes + 4 * 500);
 }

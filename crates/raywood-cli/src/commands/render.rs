@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use raywood::{StructureKind, StructureStats};
+use raywood::{StructureKind, StructureStats, Vec3};
 use raywood_render::{
-    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, default_view, render,
-    write_png,
+    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, choose_camera,
+    choose_lights, render, write_png,
 };
-use raywood_scene::{Light, LightKind, Rgb, Scene, ambient};
+use raywood_scene::{Camera, Light, LightKind, Rgb, Scene, ambient};
 use serde_json::{Value, json};
 
 use super::{info, thread_pool};
@@ -53,7 +53,7 @@ pub(crate) struct Args {
     depth: u32,
 
     /// Threads to use, else all cores
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
     /// Where the eye is
@@ -80,7 +80,7 @@ pub(crate) struct Args {
 
     /// Point light; may be repeated
     ///
-    /// Takes the place of the scene's lights. The strength S is relative: 1, the default, fully lights a surface as far away as the middle of the picture.
+    /// Takes the place of the scene's lights, with a little ambient light. The strength S is relative: 1, the default, fully lights a surface as far away as the middle of the picture.
     #[arg(long, value_name = "X,Y,Z[,S]", allow_hyphen_values = true)]
     light: Vec<PointLight>,
 
@@ -115,6 +115,7 @@ struct Report<'a> {
     structure: StructureStats,
     load: Duration,
     build: Duration,
+    view: Duration,
     render: RenderStats,
     write: Duration,
 }
@@ -145,7 +146,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .map_err(Failure::bad_input)?;
     let build = started.elapsed();
 
-    let View { camera, lights } = view(args, &scene, &prepared)?;
+    let started = Instant::now();
+    let choose = || view(args, &scene, &prepared);
+    let View { camera, lights } = during_step("choosing a view", || pool.install(choose))?;
+    let chosen = started.elapsed();
     let progress = Progress::new();
     let (image, stats) = during_rendering(&progress, || {
         pool.install(|| render(&prepared, &camera, &lights, &options, &progress))
@@ -160,7 +164,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let write = started.elapsed();
 
     let structure = prepared.structure().stats();
-    let report = Report { args, scene: &scene, kind, structure, load, build, render: stats, write };
+    let report = Report {
+        args,
+        scene: &scene,
+        kind,
+        structure,
+        load,
+        build,
+        view: chosen,
+        render: stats,
+        write,
+    };
     if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
 }
 
@@ -175,39 +189,46 @@ fn output_file(args: &Args) -> Result<OutputFile, Failure> {
     OutputFile::new(path)
 }
 
-/// The camera and lights: the scene's or default ones, as far as the command line does not say otherwise.
+/// The camera and lights: those that the command line gives, else the scene's, else chosen ones; lights for the camera that is used.
 fn view(args: &Args, scene: &Scene, prepared: &PreparedScene<'_>) -> Result<View, Failure> {
-    let aspect = args.size.width as f32 / args.size.height as f32;
-    let mut view = default_view(prepared, aspect);
-    if let Some(wanted) = &args.camera {
-        let by_number = wanted
-            .parse::<usize>()
-            .ok()
-            .and_then(|number| scene.cameras.get(number.checked_sub(1)?));
-        let camera =
-            by_number.or_else(|| scene.cameras.iter().find(|camera| camera.name == *wanted));
-        view.camera = camera.cloned().ok_or_else(|| no_such_camera(wanted, scene))?;
-    }
-    let camera = &mut view.camera;
-    let or_given =
-        |value: raywood::Vec3, given: Option<Point>| given.map_or(value, |point| point.0);
+    let mut camera = match (&args.camera, scene.cameras.first()) {
+        (Some(wanted), _) => camera_called(wanted, scene)?,
+        (None, Some(first)) => first.clone(),
+        (None, None) => {
+            let aspect = args.size.width as f32 / args.size.height as f32;
+            choose_camera(prepared, aspect)
+        }
+    };
+    let or_given = |value: Vec3, given: Option<Point>| given.map_or(value, |point| point.0);
     camera.eye = or_given(camera.eye, args.eye);
     camera.target = or_given(camera.target, args.target);
     camera.up = or_given(camera.up, args.up);
     camera.fov_y = args.fov.unwrap_or(camera.fov_y);
 
-    if !args.light.is_empty() {
-        let point_light = |light: &PointLight| {
-            let to_target = camera.target - light.position;
-            Light {
-                name: String::new(),
-                kind: LightKind::Point { position: light.position },
-                intensity: Rgb::splat(light.strength * to_target.dot(to_target)),
-            }
-        };
-        view.lights = args.light.iter().map(point_light).chain([ambient(0.15)]).collect();
-    }
-    Ok(view)
+    let point_light = |light: &PointLight| {
+        let to_target = camera.target - light.position;
+        Light {
+            name: String::new(),
+            kind: LightKind::Point { position: light.position },
+            intensity: Rgb::splat(light.strength * to_target.dot(to_target)),
+        }
+    };
+    let lights = if !args.light.is_empty() {
+        args.light.iter().map(point_light).chain([ambient(0.15)]).collect()
+    } else if !scene.lights.is_empty() {
+        scene.lights.clone()
+    } else {
+        choose_lights(prepared, &camera)
+    };
+    Ok(View { camera, lights })
+}
+
+/// The scene's camera of a number, from 1, or a name.
+fn camera_called(wanted: &str, scene: &Scene) -> Result<Camera, Failure> {
+    let number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+    let by_number = number.and_then(|index| scene.cameras.get(index));
+    let camera = by_number.or_else(|| scene.cameras.iter().find(|camera| camera.name == wanted));
+    camera.cloned().ok_or_else(|| no_such_camera(wanted, scene))
 }
 
 fn no_such_camera(wanted: &str, scene: &Scene) -> Failure {
@@ -221,7 +242,7 @@ fn no_such_camera(wanted: &str, scene: &Scene) -> Failure {
 
 impl Report<'_> {
     fn as_text(&self) -> String {
-        let Self { args, scene, kind, structure, load, build, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, view, render, write } = self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
         let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
@@ -237,6 +258,7 @@ impl Report<'_> {
         let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
         let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
         line("build", format!("{}   {}, {size}", seconds(build), kind.name()));
+        line("view", seconds(view));
         let [primary, shadow, reflection, refraction] =
             [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
         line(
@@ -265,7 +287,7 @@ impl Report<'_> {
     }
 
     fn as_json(&self) -> Value {
-        let Self { args, scene, kind, structure, load, build, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, view, render, write } = self;
         let rays = render.rays;
         json!({
             "scene": args.scene,
@@ -281,6 +303,7 @@ impl Report<'_> {
             "seconds": {
                 "load": load.as_secs_f64(),
                 "build": build.as_secs_f64(),
+                "view": view.as_secs_f64(),
                 "render": render.elapsed.as_secs_f64(),
                 "write": write.as_secs_f64(),
             },

@@ -58,7 +58,7 @@ pub trait Geometry: Sync {
 
     /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
     ///
-    /// `hit` must be an answer that this geometry gave for `ray`.
+    /// `hit` must be an answer that this geometry gave for `ray`; it may panic on a primitive that does not exist.
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint;
 }
 

@@ -16,6 +16,7 @@ pub struct Spheres {
 
 /// Why an array does not describe spheres.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SpheresError {
     /// The first sphere that is wrong.
     pub sphere: usize,

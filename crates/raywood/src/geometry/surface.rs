@@ -21,14 +21,19 @@ impl SurfacePoint {
     /// The origin is moved off the surface to the side that `direction` points to, by a distance that follows from
     /// the coordinates' size, never by a fixed epsilon.
     #[inline]
-    pub fn spawn(&self, direction: Vec3) -> Ray {
+    pub fn spawn(&self, direction: impl Into<Vec3>) -> Ray {
+        let direction = direction.into();
         Ray::new(self.offset(direction.dot(self.normal)), direction)
     }
 
-    /// A ray from this point to `target` (`t` = 1 there, excluded) that does not hit the surface it starts on.
+    /// A ray from this point towards `target`, where `t` is 1, that hits neither the surface it starts on nor one that the target lies
+    /// on: it ends a 4096th of the way before.
     #[inline]
-    pub fn spawn_towards(&self, target: Vec3) -> Ray {
-        Ray::between(self.offset((target - self.position).dot(self.normal)), target)
+    pub fn spawn_towards(&self, target: impl Into<Vec3>) -> Ray {
+        const END: f32 = 1.0 - 1.0 / 4096.0;
+        let target = target.into();
+        let side = (target - self.position).dot(self.normal);
+        Ray::between(self.offset(side), target).with_interval(0.0, END)
     }
 
     /// The position moved off the surface to the given side of the normal, each coordinate rounded away from it.

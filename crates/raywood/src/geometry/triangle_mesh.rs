@@ -151,7 +151,7 @@ impl Geometry for TriangleMesh {
         let largest_coordinate = p0.abs().max(p1.abs()).max(p2.abs()).max_element();
         SurfacePoint {
             position,
-            normal: unit_normal(p1 - p0, p2 - p0),
+            normal: unit_normal([p0, p1, p2]),
             clearance: CLEARANCE * largest_coordinate,
         }
     }
@@ -161,15 +161,13 @@ impl Geometry for TriangleMesh {
 /// 9 of them along the normal, and the next ray's test of the triangle is exact where it matters: `docs/numerics.md`.
 const CLEARANCE: f32 = 6.0 * f32::EPSILON;
 
-/// The unit normal of a triangle from two of its edges, zero if it has no area. In double precision, where the
-/// product of two tiny or huge edges neither vanishes nor overflows and slivers keep their direction.
-fn unit_normal(edge1: Vec3, edge2: Vec3) -> Vec3 {
-    let [a, b] = [edge1, edge2].map(|e| e.to_array().map(f64::from));
+/// The unit normal of a triangle, zero if it has no area. In double precision, where the product of two tiny or huge edges neither vanishes
+/// nor overflows and slivers keep their direction.
+fn unit_normal(corners: [Vec3; 3]) -> Vec3 {
+    let [p0, p1, p2] = corners.map(|p| p.to_array().map(f64::from));
+    let edge = |p: [f64; 3]| [p[0] - p0[0], p[1] - p0[1], p[2] - p0[2]];
+    let (a, b) = (edge(p1), edge(p2));
     let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-    if length > 0.0 && length.is_finite() {
-        Vec3::from(n.map(|x| (x / length) as f32))
-    } else {
-        Vec3::ZERO
-    }
+    if length > 0.0 { Vec3::from(n.map(|x| (x / length) as f32)) } else { Vec3::ZERO }
 }

@@ -1,4 +1,4 @@
-//! The lecture's tree: a binary bounding volume hierarchy of 32-byte nodes in one pool.
+//! The textbook's tree: a binary bounding volume hierarchy of 32-byte nodes in one pool.
 
 use super::AccelerationStructure;
 use crate::build::Builder;
