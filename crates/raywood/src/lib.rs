@@ -57,6 +57,7 @@ pub use geometry::{
 pub use hit::Hit;
 pub use ray::Ray;
 pub use stats::StructureStats;
+pub use structures::UniformGrid;
 pub use structures::{AccelerationStructure, BruteForce, Bvh2, Node, Structure, StructureKind};
 pub use traverse::{Counts, Probe};
 pub use validate::ValidationError;

@@ -44,6 +44,13 @@ pub enum ValidationError {
         /// In how many leaves.
         times: usize,
     },
+    /// A cell does not refer to a primitive that reaches into it.
+    NotReferenced {
+        /// The cell.
+        node: usize,
+        /// The primitive.
+        primitive: u32,
+    },
     /// A leaf lies deeper than the traversals' stacks allow.
     TooDeep {
         /// Its level.
@@ -68,6 +75,12 @@ impl fmt::Display for ValidationError {
             }
             Self::PrimitiveReached { primitive, times } => {
                 write!(f, "primitive {primitive} is in {times} leaves instead of one")
+            }
+            Self::NotReferenced { node, primitive } => {
+                write!(
+                    f,
+                    "cell {node} does not refer to primitive {primitive}, which reaches into it"
+                )
             }
             Self::TooDeep { depth } => {
                 write!(f, "a leaf on level {depth}, the deepest allowed is {MAX_DEPTH}")

@@ -98,14 +98,20 @@ fn leaves_follow_the_options() {
         assert!(bvh.stats().max_leaf_primitives <= max_leaf_size);
     }
     // Absurd values are brought into range.
-    let options =
-        BuildOptions { bins: 0, max_leaf_size: 0, node_cost: f32::NAN, primitive_cost: -1.0 };
+    let options = BuildOptions {
+        bins: 0,
+        max_leaf_size: 0,
+        node_cost: f32::NAN,
+        primitive_cost: -1.0,
+        ..Default::default()
+    };
     Bvh::build_with(&mesh, &options).expect("it builds").validate().expect("a valid tree");
     let options = BuildOptions {
         bins: usize::MAX,
         max_leaf_size: usize::MAX,
         node_cost: 1e30,
         primitive_cost: 1e-30,
+        ..Default::default()
     };
     assert_eq!(Bvh::build_with(&mesh, &options).expect("it builds").stats().nodes, 1);
 }

@@ -18,11 +18,13 @@ pub struct BuildOptions {
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
     pub primitive_cost: f32,
+    /// About how many cells a grid has for each primitive, 0.01 to 100. More cells make shorter lists, longer walks and more memory.
+    pub grid_density: f32,
 }
 
 impl Default for BuildOptions {
     fn default() -> Self {
-        Self { bins: 16, max_leaf_size: 8, node_cost: 1.0, primitive_cost: 1.0 }
+        Self { bins: 16, max_leaf_size: 8, node_cost: 1.0, primitive_cost: 1.0, grid_density: 4.0 }
     }
 }
 
@@ -35,6 +37,11 @@ impl BuildOptions {
             max_leaf_size: self.max_leaf_size.max(1),
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
+            grid_density: if self.grid_density.is_nan() {
+                Self::default().grid_density
+            } else {
+                self.grid_density.clamp(0.01, 100.0)
+            },
         }
     }
 

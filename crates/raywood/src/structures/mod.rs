@@ -2,11 +2,13 @@
 
 mod brute_force;
 mod bvh2;
+mod grid;
 mod registry;
 mod structure;
 
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
+pub use grid::UniformGrid;
 pub use registry::StructureKind;
 pub use structure::Structure;
 

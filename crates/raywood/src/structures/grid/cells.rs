@@ -1,0 +1,142 @@
+//! Which primitives lie in which cell of a lattice: counted, then written.
+
+use super::lattice::{Block, Lattice};
+use crate::{Aabb, Geometry, parallel};
+
+/// Sets larger than this are worked on in parallel.
+const PARALLEL_PRIMITIVES: usize = 8192;
+
+/// About how many tasks share the cells then. Each goes over all primitives, so there must not be many.
+const TASKS: usize = 16;
+
+/// The cells of one lattice: those of cell `i` are `references[starts[i]..starts[i + 1]]`, in ascending order.
+pub(super) struct Cells {
+    pub(super) lattice: Lattice,
+    pub(super) starts: Vec<u32>,
+    pub(super) references: Vec<u32>,
+}
+
+/// What is to be put into cells.
+pub(super) struct Content<'a, G> {
+    pub(super) geometry: &'a G,
+    /// The primitives, in ascending order.
+    pub(super) primitives: &'a [u32],
+    /// The box around each, or around its part that matters.
+    pub(super) bounds: &'a [Aabb],
+}
+
+impl<G: Geometry> Content<'_, G> {
+    /// Puts the primitives into about `cells` cells, fewer if it takes more than `limit` references.
+    ///
+    /// The limit is kept by counting the cells that the boxes touch, each time with half as many cells: O(N log cells).
+    pub(super) fn divide(&self, cells: f64, limit: u64) -> Cells {
+        let around = |all: &mut Aabb, bounds: &Aabb| *all = all.union(*bounds);
+        let bounds = parallel::fold(self.bounds, Aabb::EMPTY, around, around);
+        let mut target = cells;
+        let (lattice, blocks) = loop {
+            let lattice = Lattice::new(&bounds, target);
+            let blocks = parallel::map(self.bounds.len(), |i| lattice.touched(&self.bounds[i]));
+            let add = |sum: &mut u64, block: &Block| *sum += block.cells();
+            let references = parallel::fold(&blocks, 0, add, |sum, part| *sum += part);
+            if references <= limit || lattice.cells() == 1 {
+                break (lattice, blocks);
+            }
+            target = (0.5 * target).min(lattice.cells() as f64 - 1.0);
+        };
+
+        // Count, sum up, write.
+        let filing = Filing { content: self, lattice: &lattice, blocks: &blocks };
+        let mut counts = vec![0u32; lattice.cells()];
+        filing.count(0, &mut counts);
+        let mut starts = Vec::with_capacity(counts.len() + 1);
+        let mut sum = 0;
+        starts.push(0);
+        starts.extend(counts.iter().map(|count| {
+            sum += count;
+            sum
+        }));
+        let mut references = vec![0u32; sum as usize];
+        filing.write(0, &starts, &mut references);
+        Cells { lattice, starts, references }
+    }
+}
+
+/// The passes over all primitives. Each task owns a stretch of cells and goes over all primitives in ascending order, so that
+/// nothing is shared, no order is left to chance and nothing needs sorting.
+struct Filing<'a, G> {
+    content: &'a Content<'a, G>,
+    lattice: &'a Lattice,
+    blocks: &'a [Block],
+}
+
+impl<G: Geometry> Filing<'_, G> {
+    /// Whether a stretch of so many cells is shared out further.
+    fn is_divided(&self, cells: usize) -> bool {
+        cfg!(feature = "rayon")
+            && self.blocks.len() > PARALLEL_PRIMITIVES
+            && cells > 1
+            && cells > self.lattice.cells() / TASKS
+    }
+
+    /// Counts the references of the cells from `first` on.
+    fn count(&self, first: usize, counts: &mut [u32]) {
+        if self.is_divided(counts.len()) {
+            let half = counts.len() / 2;
+            let (low, high) = counts.split_at_mut(half);
+            parallel::join_if(true, || self.count(first, low), || self.count(first + half, high));
+        } else {
+            self.for_each(first, counts.len(), |cell, _| counts[cell] += 1);
+        }
+    }
+
+    /// Writes the references of the cells from `first` on: one more start than cells.
+    fn write(&self, first: usize, starts: &[u32], references: &mut [u32]) {
+        let cells = starts.len() - 1;
+        if self.is_divided(cells) {
+            let half = cells / 2;
+            let (low, high) = references.split_at_mut((starts[half] - starts[0]) as usize);
+            parallel::join_if(
+                true,
+                || self.write(first, &starts[..=half], low),
+                || self.write(first + half, &starts[half..], high),
+            );
+        } else {
+            let mut ends: Vec<u32> = starts[..cells].iter().map(|s| s - starts[0]).collect();
+            self.for_each(first, cells, |cell, primitive| {
+                references[ends[cell] as usize] = primitive;
+                ends[cell] += 1;
+            });
+        }
+    }
+
+    /// Calls `f` with cell and primitive for each primitive and each of its cells among the `cells` from `first` on, which are
+    /// counted from 0.
+    fn for_each(&self, first: usize, cells: usize, mut f: impl FnMut(usize, u32)) {
+        let mine = first..first + cells;
+        for (block, &primitive) in self.blocks.iter().zip(self.content.primitives) {
+            let (low, high) = (block.first.map(i32::from), block.last.map(i32::from));
+            if self.lattice.number(high) < mine.start || mine.end <= self.lattice.number(low) {
+                continue;
+            }
+            for z in low[2]..=high[2] {
+                for y in low[1]..=high[1] {
+                    let row = self.lattice.number([0, y, z]);
+                    for x in low[0]..=high[0] {
+                        let cell = row + x as usize;
+                        if mine.contains(&cell)
+                            && (block.is_row() || self.reaches(primitive, [x, y, z]))
+                        {
+                            f(cell - first, primitive);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a primitive whose box touches a cell has a part there itself.
+    fn reaches(&self, primitive: u32, cell: [i32; 3]) -> bool {
+        let around = self.lattice.widened_cell_bounds(cell);
+        !self.content.geometry.clipped_bounds(primitive, &around).is_empty()
+    }
+}

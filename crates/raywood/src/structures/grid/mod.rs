@@ -1,0 +1,12 @@
+//! Structures that divide space into equal cells: the uniform grid, and the grid whose crowded cells hold grids.
+
+mod build;
+mod cells;
+mod check;
+mod dda;
+mod lattice;
+mod mailbox;
+mod pool;
+mod uniform;
+
+pub use uniform::UniformGrid;

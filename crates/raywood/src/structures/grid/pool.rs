@@ -1,0 +1,134 @@
+//! Grids within grids: the cells and references of all of them in three arrays, and how rays go through them.
+
+use super::dda::walk;
+use super::lattice::Lattice;
+use super::mailbox::Mailbox;
+use crate::traverse::nearest::{Nearest, blocks};
+use crate::{Geometry, Hit, PreparedRay, Probe, Ray, StructureStats};
+
+/// Set in the only reference of a cell that holds a grid; the other bits are the grid's number. Primitive numbers leave it free.
+const IS_GRID: u32 = 1 << 31;
+
+/// A grid whose cells may hold grids: a lattice each, and the cells and references of all of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct GridPool {
+    /// How many primitives the geometry has.
+    pub(super) primitives: usize,
+    /// How many grids lie within each other at most.
+    pub(super) levels: usize,
+    /// Each grid's lattice and the place of its first cell. The first grid is the outermost; none if there is no primitive.
+    pub(super) grids: Vec<(Lattice, usize)>,
+    /// Where the references of each cell begin. Those of the next cell begin where they end.
+    pub(super) starts: Vec<u32>,
+    /// The primitives of all cells; of a cell with a grid, the grid's number.
+    pub(super) references: Vec<u32>,
+}
+
+/// What a cell holds.
+pub(super) enum Cell<'a> {
+    /// Primitives, in ascending order.
+    Primitives(&'a [u32]),
+    /// The number of a grid of its own.
+    Grid(usize),
+}
+
+impl GridPool {
+    /// What the cell at a place holds.
+    #[inline]
+    pub(super) fn cell(&self, place: usize) -> Cell<'_> {
+        match &self.references[self.starts[place] as usize..self.starts[place + 1] as usize] {
+            &[grid] if grid & IS_GRID != 0 => Cell::Grid((grid & !IS_GRID) as usize),
+            primitives => Cell::Primitives(primitives),
+        }
+    }
+
+    /// The closest hit, the lowest primitive number among equally near ones.
+    pub(super) fn closest<G: Geometry, P: Probe>(
+        &self,
+        geometry: &G,
+        ray: &Ray,
+        probe: &mut P,
+    ) -> Option<Hit> {
+        let ray = PreparedRay::new(ray)?;
+        let (mut nearest, mut mailbox) = (Nearest::new(&ray), Mailbox::new());
+        self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
+            for &primitive in primitives {
+                if mailbox.is_new(primitive) {
+                    probe.primitives(1);
+                    nearest.test(geometry, &ray, primitive);
+                }
+            }
+            Some(nearest.t_max())
+        });
+        nearest.into_hit()
+    }
+
+    /// Whether the ray meets any primitive in its interval.
+    pub(super) fn occluded<G: Geometry, P: Probe>(
+        &self,
+        geometry: &G,
+        ray: &Ray,
+        probe: &mut P,
+    ) -> bool {
+        let Some(ray) = PreparedRay::new(ray) else { return false };
+        let mut mailbox = Mailbox::new();
+        let unblocked = self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
+            for &primitive in primitives {
+                if mailbox.is_new(primitive) {
+                    probe.primitives(1);
+                    if blocks(geometry, &ray, primitive) {
+                        return None;
+                    }
+                }
+            }
+            Some(ray.t_max)
+        });
+        unblocked.is_none()
+    }
+
+    /// Walks a ray through a grid and the grids in its cells. `visit` is given the primitives of each cell, and answers with the distance up
+    /// to which the ray is still of interest, which is returned at the end, or with `None` to end it all.
+    fn walk_leaves<P: Probe>(
+        &self,
+        grid: usize,
+        ray: &PreparedRay,
+        t_max: f32,
+        probe: &mut P,
+        visit: &mut impl FnMut(&[u32], &mut P) -> Option<f32>,
+    ) -> Option<f32> {
+        let Some((lattice, first_cell)) = self.grids.get(grid) else { return Some(t_max) };
+        let mut t_max = t_max;
+        walk(lattice, ray, t_max, |cell| {
+            probe.boxes(1);
+            match self.cell(first_cell + cell) {
+                Cell::Primitives([]) => {}
+                Cell::Primitives(primitives) => t_max = visit(primitives, probe)?,
+                Cell::Grid(inner) => t_max = self.walk_leaves(inner, ray, t_max, probe, visit)?,
+            }
+            Some(t_max)
+        })?;
+        Some(t_max)
+    }
+
+    /// Counts, levels and memory. Cells that hold grids count as cells, not as leaves.
+    pub(super) fn stats(&self) -> StructureStats {
+        let mut stats = StructureStats {
+            primitives: self.primitives,
+            nodes: self.starts.len().saturating_sub(1),
+            depth: self.levels,
+            bytes: size_of_val(&self.grids[..])
+                + size_of_val(&self.starts[..])
+                + size_of_val(&self.references[..]),
+            ..StructureStats::default()
+        };
+        for place in 0..stats.nodes {
+            if let Cell::Primitives(primitives @ [_, ..]) = self.cell(place) {
+                stats.leaves += 1;
+                stats.references += primitives.len();
+                stats.max_leaf_primitives = stats.max_leaf_primitives.max(primitives.len());
+            }
+        }
+        stats.mean_leaf_primitives = stats.references as f64 / stats.leaves.max(1) as f64;
+        stats
+    }
+}
