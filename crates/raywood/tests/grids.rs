@@ -3,7 +3,7 @@
 use raywood::{BuildOptions, Counts, Ray, Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, rays, shapes};
 
-const GRIDS: &[StructureKind] = &[StructureKind::UniformGrid];
+const GRIDS: &[StructureKind] = &[StructureKind::UniformGrid, StructureKind::NestedGrid];
 
 fn build(kind: StructureKind, mesh: &TriangleMesh) -> Structure<&TriangleMesh> {
     with(kind, mesh, &BuildOptions::default())

@@ -8,7 +8,7 @@ mod structure;
 
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
-pub use grid::UniformGrid;
+pub use grid::{NestedGrid, UniformGrid};
 pub use registry::StructureKind;
 pub use structure::Structure;
 

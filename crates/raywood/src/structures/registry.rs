@@ -1,6 +1,6 @@
 //! The registry of structures: names and how each is built. A new structure is one line here.
 
-use super::{AccelerationStructure, BruteForce, Bvh2, UniformGrid};
+use super::{AccelerationStructure, BruteForce, Bvh2, NestedGrid, UniformGrid};
 use crate::build::Builder;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
 
@@ -89,6 +89,7 @@ macro_rules! structures {
 structures! {
     BruteForce, BruteForce, "brute-force", "No structure: every ray tests every primitive.", BruteForce::build;
     UniformGrid, UniformGrid, "uniform-grid", "Equal cells, walked one by one.", UniformGrid::build;
+    NestedGrid, NestedGrid, "nested-grid", "Grids in the crowded cells of a coarse grid.", NestedGrid::build;
     BvhMidpoint, Bvh2, "bvh-midpoint", "Binary BVH, split in the middle of the longest axis.",
         |geometry, options| Bvh2::build_by(Builder::Midpoint, geometry, options);
     BvhMedian, Bvh2, "bvh-median", "Binary BVH, halved by number of primitives.",

@@ -162,4 +162,10 @@ impl Lattice {
         let margin = crate::Vec3::from(self.cell.map(|edge| edge / 64.0));
         Aabb::new(bounds.min - margin, bounds.max + margin)
     }
+
+    /// Where the cell of a number lies on each axis.
+    pub(super) fn place(&self, number: usize) -> [i32; 3] {
+        let [nx, ny, _] = self.resolution.map(|n| n as usize);
+        [number % nx, number / nx % ny, number / (nx * ny)].map(|index| index as i32)
+    }
 }

@@ -6,7 +6,9 @@ mod check;
 mod dda;
 mod lattice;
 mod mailbox;
+mod nested;
 mod pool;
 mod uniform;
 
+pub use nested::NestedGrid;
 pub use uniform::UniformGrid;

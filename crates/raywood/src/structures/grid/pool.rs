@@ -16,6 +16,8 @@ pub(super) struct GridPool {
     pub(super) primitives: usize,
     /// How many grids lie within each other at most.
     pub(super) levels: usize,
+    /// How many of the first cells are as fine as they get.
+    pub(super) tried: usize,
     /// Each grid's lattice and the place of its first cell. The first grid is the outermost; none if there is no primitive.
     pub(super) grids: Vec<(Lattice, usize)>,
     /// Where the references of each cell begin. Those of the next cell begin where they end.
@@ -30,6 +32,11 @@ pub(super) enum Cell<'a> {
     Primitives(&'a [u32]),
     /// The number of a grid of its own.
     Grid(usize),
+}
+
+/// The reference of a cell that holds a grid.
+pub(super) fn reference_to_grid(number: usize) -> u32 {
+    number as u32 | IS_GRID
 }
 
 impl GridPool {
