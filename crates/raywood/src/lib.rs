@@ -57,8 +57,8 @@ pub use geometry::{
 pub use hit::Hit;
 pub use ray::Ray;
 pub use stats::StructureStats;
-pub use structures::{AccelerationStructure, BruteForce, Bvh2, Node, Structure, StructureKind};
-pub use structures::{NestedGrid, UniformGrid};
+pub use structures::{AccelerationStructure, Node, Structure, StructureKind};
+pub use structures::{BruteForce, Bvh2, NestedGrid, Octree, UniformGrid};
 pub use traverse::{Counts, Probe};
 pub use validate::ValidationError;
 pub use vec3::Vec3;

@@ -51,6 +51,11 @@ pub enum ValidationError {
         /// The primitive.
         primitive: u32,
     },
+    /// A cell does not refer to exactly the primitives that overlap it.
+    WrongContent {
+        /// The cell's node.
+        node: usize,
+    },
     /// A leaf lies deeper than the traversals' stacks allow.
     TooDeep {
         /// Its level.
@@ -81,6 +86,9 @@ impl fmt::Display for ValidationError {
                     f,
                     "cell {node} does not refer to primitive {primitive}, which reaches into it"
                 )
+            }
+            Self::WrongContent { node } => {
+                write!(f, "node {node} does not hold exactly the primitives that overlap its cell")
             }
             Self::TooDeep { depth } => {
                 write!(f, "a leaf on level {depth}, the deepest allowed is {MAX_DEPTH}")

@@ -20,11 +20,23 @@ pub struct BuildOptions {
     pub primitive_cost: f32,
     /// About how many cells a grid has for each primitive, 0.01 to 100. More cells make shorter lists, longer walks and more memory.
     pub grid_density: f32,
+    /// How many primitives a cell of an octree may hold without being split, at least 1.
+    pub octree_leaf_size: usize,
+    /// The most levels of an octree, the root's counted, 1 to 24.
+    pub octree_max_depth: usize,
 }
 
 impl Default for BuildOptions {
     fn default() -> Self {
-        Self { bins: 16, max_leaf_size: 8, node_cost: 1.0, primitive_cost: 1.0, grid_density: 4.0 }
+        Self {
+            bins: 16,
+            max_leaf_size: 8,
+            node_cost: 1.0,
+            primitive_cost: 1.0,
+            grid_density: 4.0,
+            octree_leaf_size: 8,
+            octree_max_depth: crate::structures::octree::MAX_LEVELS,
+        }
     }
 }
 
@@ -42,6 +54,8 @@ impl BuildOptions {
             } else {
                 self.grid_density.clamp(0.01, 100.0)
             },
+            octree_leaf_size: self.octree_leaf_size.max(1),
+            octree_max_depth: self.octree_max_depth.clamp(1, crate::structures::octree::MAX_LEVELS),
         }
     }
 

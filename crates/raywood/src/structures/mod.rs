@@ -3,12 +3,14 @@
 mod brute_force;
 mod bvh2;
 mod grid;
+pub(crate) mod octree;
 mod registry;
 mod structure;
 
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
 pub use grid::{NestedGrid, UniformGrid};
+pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;
 

@@ -1,6 +1,6 @@
 //! The registry of structures: names and how each is built. A new structure is one line here.
 
-use super::{AccelerationStructure, BruteForce, Bvh2, NestedGrid, UniformGrid};
+use super::{AccelerationStructure, BruteForce, Bvh2, NestedGrid, Octree, UniformGrid};
 use crate::build::Builder;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
 
@@ -98,6 +98,7 @@ structures! {
         |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
     BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, binned surface area heuristic: the default.",
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
+    Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
 }
 
 impl Default for StructureKind {
