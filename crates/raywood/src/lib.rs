@@ -57,8 +57,8 @@ pub use geometry::{
 pub use hit::Hit;
 pub use ray::Ray;
 pub use stats::StructureStats;
-pub use structures::{AccelerationStructure, Node, Structure, StructureKind};
-pub use structures::{BruteForce, Bvh2, NestedGrid, Octree, UniformGrid};
+pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};
+pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid};
 pub use traverse::{Counts, Probe};
 pub use validate::ValidationError;
 pub use vec3::Vec3;

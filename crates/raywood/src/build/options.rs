@@ -24,6 +24,8 @@ pub struct BuildOptions {
     pub octree_leaf_size: usize,
     /// The most levels of an octree, the root's counted, 1 to 24.
     pub octree_max_depth: usize,
+    /// By which share, 0 to 1, a kD-tree's split counts as cheaper when it cuts off empty space.
+    pub kd_empty_bonus: f32,
 }
 
 impl Default for BuildOptions {
@@ -36,6 +38,7 @@ impl Default for BuildOptions {
             grid_density: 4.0,
             octree_leaf_size: 8,
             octree_max_depth: crate::structures::octree::MAX_LEVELS,
+            kd_empty_bonus: 0.2,
         }
     }
 }
@@ -56,6 +59,11 @@ impl BuildOptions {
             },
             octree_leaf_size: self.octree_leaf_size.max(1),
             octree_max_depth: self.octree_max_depth.clamp(1, crate::structures::octree::MAX_LEVELS),
+            kd_empty_bonus: if self.kd_empty_bonus > 0.0 {
+                self.kd_empty_bonus.min(1.0)
+            } else {
+                0.0
+            },
         }
     }
 

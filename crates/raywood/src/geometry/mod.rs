@@ -1,5 +1,6 @@
 //! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
 
+mod clip;
 mod joined;
 mod prepared_ray;
 mod spheres;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::clip::clipped_triangle_bounds;
 use super::watertight::intersect_triangle;
 use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
 use crate::{Aabb, Hit, Ray, Vec3};
@@ -136,6 +137,10 @@ impl Geometry for TriangleMesh {
     #[inline]
     fn bounds(&self, primitive: u32) -> Aabb {
         Aabb::of_points(self.corners(primitive))
+    }
+
+    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
+        clipped_triangle_bounds(self.corners(primitive), cell)
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 mod brute_force;
 mod bvh2;
 mod grid;
+mod kd_tree;
 pub(crate) mod octree;
 mod registry;
 mod structure;
@@ -10,6 +11,7 @@ mod structure;
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
 pub use grid::{NestedGrid, UniformGrid};
+pub use kd_tree::{KdNode, KdTree};
 pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;

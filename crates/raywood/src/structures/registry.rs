@@ -1,6 +1,6 @@
 //! The registry of structures: names and how each is built. A new structure is one line here.
 
-use super::{AccelerationStructure, BruteForce, Bvh2, NestedGrid, Octree, UniformGrid};
+use super::{AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid};
 use crate::build::Builder;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
 
@@ -99,6 +99,7 @@ structures! {
     BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, binned surface area heuristic: the default.",
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
     Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
+    KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build;
 }
 
 impl Default for StructureKind {

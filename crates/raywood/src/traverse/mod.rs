@@ -6,6 +6,6 @@ pub(crate) mod nearest;
 pub(crate) mod occluded;
 mod probe;
 pub(crate) mod slab;
-mod stack;
+pub(crate) mod stack;
 
 pub use probe::{Counts, Probe};

@@ -41,7 +41,11 @@ pub(crate) fn inside_own_bounds(
 /// The part of the interval from `t_min` to `t_max` inside a box, given by its corners of smallest (0) and largest (1)
 /// coordinates; empty (near beyond far) if there is none.
 #[inline]
-fn overlap<'a>(ray: &PreparedRay, t_max: f32, corner: impl Fn(usize) -> &'a Vec3) -> (f32, f32) {
+pub(crate) fn overlap<'a>(
+    ray: &PreparedRay,
+    t_max: f32,
+    corner: impl Fn(usize) -> &'a Vec3,
+) -> (f32, f32) {
     // A ray that runs along a slab's face gives NaN (zero times infinity); comparing so that NaN loses lets the other axes
     // decide, which keeps the face part of the box.
     let max = |x: f32, acc: f32| if x > acc { x } else { acc };
