@@ -84,7 +84,7 @@ pub(super) fn choose(
     let model = CostModel {
         cell,
         area: half_area(cell),
-        node_cost: f64::from(options.node_cost) * PLANE_COST,
+        node_cost: f64::from(options.node_cost),
         primitive_cost: f64::from(options.primitive_cost),
         empty_bonus: f64::from(options.kd_empty_bonus),
     };
@@ -100,9 +100,6 @@ pub(super) fn choose(
     let splits = (0..3).map(|axis| swept(references, &model, axis));
     splits.reduce(cheaper).flatten().and_then(worthwhile)
 }
-
-/// What passing a plane costs of what testing two boxes does.
-const PLANE_COST: f64 = 0.5;
 
 /// Tries the planes between equal bins on each axis. O(N).
 fn binned(references: &[Reference], model: &CostModel<'_>) -> Option<Split> {
