@@ -60,3 +60,17 @@ fn axis_parallel(rng: &mut Rng, from: Vec3, point: Vec3) -> Ray {
     direction[axis] = if point[axis] >= from[axis] { 1.0 } else { -1.0 };
     Ray::new(origin, direction)
 }
+
+/// A ray inside the box from `-half` to `half`, from near one of its long edges to a point on a face very near an edge.
+pub fn towards_an_edge(rng: &mut Rng, half: Vec3, nearness: f32) -> Ray {
+    let z = rng.range(-0.5, 0.5) * half.z.min(10.0);
+    let beside = |rng: &mut Rng| nearness * rng.range(0.1, 1.0);
+    let from = Vec3::new(half.x - beside(rng), beside(rng) - half.y, z);
+    let off_the_edge = nearness * 10f32.powf(rng.range(-7.0, 0.0));
+    let to_z = z + nearness * rng.range(-3.0, 3.0);
+    let target = match rng.below(2) {
+        0 => Vec3::new(half.x, off_the_edge - half.y, to_z),
+        _ => Vec3::new(half.x - off_the_edge, -half.y, to_z),
+    };
+    Ray::new(from, target - from)
+}

@@ -115,3 +115,26 @@ fn a_million_identical_triangles_are_no_trouble() {
         assert!(stats.bytes < 200 << 20, "{}: {stats}", kind.name());
     }
 }
+
+#[test]
+fn no_ray_leaks_beside_an_edge_of_large_triangles() {
+    let mut rng = Rng::new(9);
+    for length in [1.0, 1e3, 1e6] {
+        let half = Vec3::new(1.0, 1.0, length);
+        let mesh = shapes::grid_box(2, -half, half);
+        let structures: Vec<_> =
+            StructureKind::ALL.iter().map(|&kind| build(kind, &mesh)).collect();
+        for nearness in [1.5, 0.1, 1e-3, 1e-5] {
+            for _ in 0..2000 {
+                let ray = rays::towards_an_edge(&mut rng, half, nearness);
+                let hit = structures[0].intersect(&ray);
+                assert!(hit.is_some(), "length {length}: {ray:?} leaks");
+                for structure in &structures {
+                    let name = structure.kind().name();
+                    assert_eq!(structure.intersect(&ray), hit, "{name}, length {length}: {ray:?}");
+                    assert!(structure.occluded(&ray), "{name}, length {length}: {ray:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! No ray gets through a closed mesh, and none that starts on a surface hits it again.
 
 use raywood::{BuildOptions, Bvh, Ray, TriangleMesh, Vec3};
-use raywood_testkit::{Rng, shapes};
+use raywood_testkit::{Rng, rays, shapes};
 
 /// Closed meshes around a point that is well inside of each, with their size.
 fn closed_meshes() -> Vec<(&'static str, TriangleMesh, Vec3, f32)> {
@@ -169,20 +169,6 @@ fn spawned_rays_leave_slivers() {
     assert!(spawned > 200_000, "only {spawned} rays");
 }
 
-/// A ray inside the box from `-half` to `half`, from near one of its long edges to a point on a face very near an edge.
-fn towards_an_edge(rng: &mut Rng, half: Vec3, nearness: f32) -> Ray {
-    let z = rng.range(-0.5, 0.5) * half.z.min(10.0);
-    let beside = |rng: &mut Rng| nearness * rng.range(0.1, 1.0);
-    let from = Vec3::new(half.x - beside(rng), beside(rng) - half.y, z);
-    let off_the_edge = nearness * 10f32.powf(rng.range(-7.0, 0.0));
-    let to_z = z + nearness * rng.range(-3.0, 3.0);
-    let target = match rng.below(2) {
-        0 => Vec3::new(half.x, off_the_edge - half.y, to_z),
-        _ => Vec3::new(half.x - off_the_edge, -half.y, to_z),
-    };
-    Ray::new(from, target - from)
-}
-
 #[test]
 fn no_ray_leaks_beside_an_edge_of_large_triangles() {
     let mut rng = Rng::new(5);
@@ -196,7 +182,7 @@ fn no_ray_leaks_beside_an_edge_of_large_triangles() {
             });
             for nearness in [1.5, 0.1, 1e-3, 1e-5] {
                 for _ in 0..4000 {
-                    let ray = towards_an_edge(&mut rng, half, nearness);
+                    let ray = rays::towards_an_edge(&mut rng, half, nearness);
                     let hit = trees[0].intersect(&ray);
                     assert!(hit.is_some(), "length {length}, {cells} cells: {ray:?} leaks");
                     for tree in &trees {
