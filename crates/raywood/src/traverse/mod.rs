@@ -2,6 +2,7 @@
 //! that counts what happens and costs nothing when absent.
 
 pub(crate) mod closest;
+pub(crate) mod mailbox;
 pub(crate) mod nearest;
 pub(crate) mod occluded;
 mod probe;

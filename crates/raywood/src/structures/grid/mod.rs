@@ -5,7 +5,6 @@ mod cells;
 mod check;
 mod dda;
 mod lattice;
-mod mailbox;
 mod nested;
 mod pool;
 mod uniform;

@@ -2,7 +2,7 @@
 
 use super::dda::walk;
 use super::lattice::Lattice;
-use super::mailbox::Mailbox;
+use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Geometry, Hit, PreparedRay, Probe, Ray, StructureStats};
 

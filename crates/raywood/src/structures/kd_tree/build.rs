@@ -79,7 +79,7 @@ impl<G: Geometry> Builder<'_, G> {
         let split = if room.levels == 0 { None } else { choose(&references, &cell, &self.options) };
         let count = references.len();
         let parts = split.map(|split| (split, self.distribute(&references, &cell, &split)));
-        // More references than there is room for, or the same set again on both sides: a leaf.
+        // More references than there is room for: a leaf.
         let Some((split, [left, right], used)) = parts.and_then(|(split, parts)| {
             let used = parts.iter().map(|part| part.len().max(1)).sum::<usize>() - count;
             (used <= room.spare).then_some((split, parts, used))

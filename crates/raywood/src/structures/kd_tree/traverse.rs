@@ -1,6 +1,6 @@
 //! Ordered traversal with a short stack: Keller 1998, Havran, "Heuristic Ray Shooting Algorithms", 2000.
 //!
-//! # Why no hit is missed
+//! # How a hit is not missed
 //!
 //! A primitive is listed only in the leaves that its surface reaches, so the ray must visit one of these, although the triangle test moves
 //! vertices by a few roundings of their distance from the ray's origin, and may have the distance of a hit wrong by `2^-13` of itself
@@ -12,10 +12,12 @@
 //! - The interval in which cells are visited is longer than the ray's by `2^-12` of the distance, twice the error of a hit.
 //! - And by 64 of the first margins along the ray, as a ray that meets a surface at a grazing angle may pass it that much earlier.
 //!
-//! Both ends are moved so, and the closest hit so far when deciding whether a cell lies beyond it.
+//! Both ends are moved so, and the closest hit so far when deciding whether a cell lies beyond it. These margins are ample, not a proof: a
+//! triangle seen all but edge-on can have a distance that is off by more. Millions of rays at such triangles found none that is missed.
 
 use super::node::Content;
 use super::{KdNode, KdTree};
+use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::traverse::slab::{lengthened, overlap};
 use crate::traverse::stack::Stack;
@@ -40,10 +42,10 @@ pub(super) fn closest<G: Geometry, P: Probe>(
     let ray = PreparedRay::new(ray)?;
     let mut walk = Walk::new(tree, &ray)?;
     let mut nearest = Nearest::new(&ray);
-    let mut tested = Tested::default();
+    let mut mailbox = Mailbox::new();
     while let Some(leaf) = walk.next_leaf(nearest.t_max(), probe) {
         for &primitive in leaf {
-            if tested.is_new(primitive) {
+            if mailbox.is_new(primitive) {
                 probe.primitives(1);
                 nearest.test(geometry, &ray, primitive);
             }
@@ -61,10 +63,10 @@ pub(super) fn occluded<G: Geometry, P: Probe>(
 ) -> bool {
     let Some(ray) = PreparedRay::new(ray) else { return false };
     let Some(mut walk) = Walk::new(tree, &ray) else { return false };
-    let mut tested = Tested::default();
+    let mut mailbox = Mailbox::new();
     while let Some(leaf) = walk.next_leaf(ray.t_max, probe) {
         for &primitive in leaf {
-            if tested.is_new(primitive) {
+            if mailbox.is_new(primitive) {
                 probe.primitives(1);
                 if blocks(geometry, &ray, primitive) {
                     return true;
@@ -73,27 +75,6 @@ pub(super) fn occluded<G: Geometry, P: Probe>(
         }
     }
     false
-}
-
-/// The primitives a ray tested lately, so that one in several leaves is mostly tested once. Each has one place, from which a later
-/// one drives it out; being tested again then does no harm.
-struct Tested([u32; 16]);
-
-impl Default for Tested {
-    #[inline]
-    fn default() -> Self {
-        // No primitive has this number.
-        Self([u32::MAX; 16])
-    }
-}
-
-impl Tested {
-    /// Notes the primitive, and tells whether it was not noted before.
-    #[inline]
-    fn is_new(&mut self, primitive: u32) -> bool {
-        let place = &mut self.0[primitive as usize % 16];
-        std::mem::replace(place, primitive) != primitive
-    }
 }
 
 /// A ray's way through the leaves, front to back.

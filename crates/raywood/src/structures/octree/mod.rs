@@ -6,10 +6,11 @@ mod check;
 mod traverse;
 
 use super::AccelerationStructure;
+use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, Probe, Ray};
 use crate::{StructureStats, ValidationError};
-use traverse::{Mailbox, walk};
+use traverse::walk;
 
 /// The most levels of an octree, the root's counted: below them cells are as fine as single precision resolves the root.
 pub(crate) const MAX_LEVELS: usize = 24;

@@ -126,27 +126,3 @@ fn larger(x: f32, acc: f32) -> f32 {
 fn smaller(x: f32, acc: f32) -> f32 {
     if x < acc { x } else { acc }
 }
-
-/// Remembers the primitives that a ray was tested against of late, so that one in several cells is seldom tested twice (Amanatides and
-/// Woo 1987 leave the ray's number with the primitive, which threads cannot share). A primitive that is forgotten is tested again and
-/// changes nothing.
-pub(super) struct Mailbox {
-    recent: [u32; Self::SIZE],
-}
-
-impl Mailbox {
-    const SIZE: usize = 64;
-
-    /// Nothing tested yet: no primitive has the number that stands everywhere.
-    #[inline]
-    pub(super) fn new() -> Self {
-        Self { recent: [u32::MAX; Self::SIZE] }
-    }
-
-    /// Whether the primitive is not known to be tested; from now on it is.
-    #[inline]
-    pub(super) fn is_new(&mut self, primitive: u32) -> bool {
-        let place = &mut self.recent[primitive as usize % Self::SIZE];
-        std::mem::replace(place, primitive) != primitive
-    }
-}

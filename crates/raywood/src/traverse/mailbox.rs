@@ -9,18 +9,18 @@ const SLOTS: usize = 32;
 ///
 /// Each primitive has one place by its number; who comes later takes it. A primitive met again in the next cells is nearly always
 /// still there; a forgotten one is tested again, which changes no answer.
-pub(super) struct Mailbox([u32; SLOTS]);
+pub(crate) struct Mailbox([u32; SLOTS]);
 
 impl Mailbox {
     /// Nothing tested yet.
     #[inline]
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self([u32::MAX; SLOTS])
     }
 
     /// Whether the primitive is not known to have been tested; from now on it is.
     #[inline]
-    pub(super) fn is_new(&mut self, primitive: u32) -> bool {
+    pub(crate) fn is_new(&mut self, primitive: u32) -> bool {
         std::mem::replace(&mut self.0[primitive as usize % SLOTS], primitive) != primitive
     }
 }
