@@ -218,6 +218,20 @@ fn vertices_that_are_no_numbers_are_dropped_or_refused() {
 }
 
 #[test]
+fn a_picture_of_nothing_is_said_to_be_one() {
+    let folder = folder("nothing");
+    fs::write(folder.join("flat.obj"), "v 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\n").expect("a file");
+    fs::write(folder.join("points.obj"), "v 1 1 1\n").expect("a file");
+    for (file, expected) in
+        [("flat.obj", "no triangle has any area"), ("points.obj", "no triangles")]
+    {
+        let output = run(&folder, &format!("render {file} --size 32x20"));
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{file}: {}", stderr(&output));
+    }
+}
+
+#[test]
 fn help_fits_a_screen() {
     let folder = folder("help");
     for arguments in ["-h", "render -h", "info -h", "scenes -h"] {

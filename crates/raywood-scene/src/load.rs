@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
+use raywood::TriangleMesh;
+
 use crate::error::{LoadError, Place};
 use crate::formats::{FORMATS, Format, Input};
 use crate::{Material, Scene};
@@ -60,6 +62,8 @@ pub fn load_bytes(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Sc
     }
     if scene.mesh.triangles.triangles().is_empty() && scene.sphere_materials.is_empty() {
         scene.warnings.push("there are no triangles to show".to_owned());
+    } else if !has_area(&scene.mesh.triangles) {
+        scene.warnings.push("no triangle has any area: there is nothing to see".to_owned());
     }
     Ok(scene)
 }
@@ -99,5 +103,14 @@ fn format_of(path: &Path, bytes: &[u8]) -> Result<&'static Format, LoadError> {
             format!("has the unknown extension .{extension}")
         };
         LoadError::new(path, Place::File, format!("{found}; the known ones are {known}"))
+    })
+}
+
+/// Whether any triangle has an area, as far as double precision can tell.
+fn has_area(mesh: &TriangleMesh) -> bool {
+    (0..mesh.triangles().len() as u32).any(|triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(f64::from));
+        let (e, f) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+        e[1] * f[2] != e[2] * f[1] || e[2] * f[0] != e[0] * f[2] || e[0] * f[1] != e[1] * f[0]
     })
 }
