@@ -38,6 +38,7 @@ mod bvh;
 mod error;
 mod geometry;
 mod hit;
+mod minmax;
 mod parallel;
 mod ray;
 mod stats;

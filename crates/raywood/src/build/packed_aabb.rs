@@ -1,5 +1,6 @@
 //! A box in the form that builders work with.
 
+use crate::minmax::{larger, smaller};
 use crate::{Aabb, Vec3};
 
 /// A box as two groups of four numbers, the fourth of no meaning: the compiler turns a union into two vector instructions.
@@ -69,18 +70,6 @@ impl From<PackedAabb> for Aabb {
     fn from(PackedAabb { min, max }: PackedAabb) -> Self {
         Self { min: Vec3::new(min[0], min[1], min[2]), max: Vec3::new(max[0], max[1], max[2]) }
     }
-}
-
-/// The smaller number, as one instruction finds it.
-#[inline]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The larger number, as one instruction finds it.
-#[inline]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// `f` of each pair.

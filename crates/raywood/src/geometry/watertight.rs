@@ -6,6 +6,7 @@
 
 use super::{PreparedRay, PrimitiveHit};
 use crate::Vec3;
+use crate::minmax::{larger, smaller};
 
 /// Outside of this range of determinants single precision may have lost digits to underflow or come too near to overflow.
 const TRUSTED_DETERMINANTS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
@@ -63,18 +64,6 @@ pub(super) fn intersect_triangle(
     }
     let t = z * ray.shear[2];
     ray.accepts(t).then_some(PrimitiveHit { t, u, v })
-}
-
-/// The smaller of two numbers, as one instruction finds it.
-#[inline]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, as one instruction finds it.
-#[inline]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// The larger of a positive number and the absolute value of another.

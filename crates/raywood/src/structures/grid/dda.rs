@@ -17,6 +17,7 @@
 
 use super::lattice::Lattice;
 use crate::PreparedRay;
+use crate::minmax::{larger, smaller};
 use crate::traverse::slab::lengthened;
 
 /// A lattice's axis as a ray sees it: cells are counted in the order in which the ray comes through them, `steps` from 0.
@@ -111,12 +112,12 @@ pub(super) fn walk(
                 return Some(());
             }
         } else {
-            distance = larger(distance, axis.entry(0));
-            exit = smaller(exit, axis.entry(axis.count));
+            distance = larger(axis.entry(0), distance);
+            exit = smaller(axis.entry(axis.count), exit);
         }
     }
     let exit = lengthened(exit);
-    let mut end = smaller(exit, lengthened(t_max));
+    let mut end = smaller(lengthened(t_max), exit);
     let meets = distance <= end;
     if !meets {
         return Some(());
@@ -156,7 +157,7 @@ pub(super) fn walk(
 
         if distance > lengthened(previous) {
             let cell = lattice.number([0, 1, 2].map(|a| axes[a].turned(steps[a])));
-            end = smaller(exit, lengthened(visit(cell)?));
+            end = smaller(lengthened(visit(cell)?), exit);
         } else {
             // Two planes at about the same distance: on the other axes the cells just left still count.
             let first = [0, 1, 2].map(|b| match b == a {
@@ -183,19 +184,9 @@ fn visit_block(
             for x in first[0]..=last[0] {
                 let steps = [x, y, z];
                 let index = [0, 1, 2].map(|a| axes[a].turned(steps[a]));
-                *end = smaller(exit, lengthened(visit(axes[0].lattice.number(index))?));
+                *end = smaller(lengthened(visit(axes[0].lattice.number(index))?), exit);
             }
         }
     }
     Some(())
-}
-
-#[inline]
-fn larger(a: f32, b: f32) -> f32 {
-    if b > a { b } else { a }
-}
-
-#[inline]
-fn smaller(a: f32, b: f32) -> f32 {
-    if b < a { b } else { a }
 }

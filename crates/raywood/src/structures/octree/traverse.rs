@@ -6,6 +6,7 @@
 
 use super::cell::{middle, octant};
 use super::{MAX_LEVELS, Node, Octree};
+use crate::minmax::{larger, smaller};
 use crate::traverse::slab::lengthened;
 use crate::{Aabb, PreparedRay, Probe, Vec3};
 
@@ -113,16 +114,4 @@ fn entry(ray: &PreparedRay, bounds: &Aabb) -> f32 {
 #[inline]
 fn distance(ray: &PreparedRay, axis: usize, plane: f32) -> f32 {
     (plane - ray.origin[axis]) * ray.reciprocal[axis]
-}
-
-/// The larger number; NaN loses, so that a ray in a plane is in the cells on both sides.
-#[inline]
-fn larger(x: f32, acc: f32) -> f32 {
-    if x > acc { x } else { acc }
-}
-
-/// The smaller number; NaN loses.
-#[inline]
-fn smaller(x: f32, acc: f32) -> f32 {
-    if x < acc { x } else { acc }
 }
