@@ -89,13 +89,14 @@ impl Aabb {
         if self.is_empty() { 0.0 } else { self.extent().length() }
     }
 
-    /// Half the surface area, zero when empty. Ratios of areas are all that cost estimates need.
+    /// Half the surface area, zero when empty, in double precision, where no finite box overflows or vanishes. Ratios of areas are all
+    /// that cost estimates need.
     #[inline]
-    pub fn half_area(&self) -> f32 {
+    pub fn half_area(&self) -> f64 {
         if self.is_empty() {
             return 0.0;
         }
-        let e = self.extent();
-        e.x * e.y + e.y * e.z + e.z * e.x
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]));
+        x * y + y * z + z * x
     }
 }

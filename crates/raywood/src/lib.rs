@@ -57,7 +57,7 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use ray::Ray;
-pub use stats::StructureStats;
+pub use stats::{Level, NodeView, StructureStats};
 pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};
 pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid};
 pub use traverse::{Counts, Probe};

@@ -132,6 +132,6 @@ fn a_triangle_in_many_cells_is_tested_once() {
         let mut counts = Counts::default();
         build(kind, &mesh).intersect_probed(&ray, &mut counts);
         assert!(counts.primitives <= 1, "{}: {counts:?}", kind.name());
-        assert!(counts.boxes >= 4, "{}: {counts:?}", kind.name());
+        assert!(counts.nodes >= 4, "{}: {counts:?}", kind.name());
     }
 }

@@ -188,10 +188,14 @@ pub(crate) fn structure(kind: StructureKind, stats: &StructureStats) -> Value {
         "references": stats.references,
         "nodes": stats.nodes,
         "leaves": stats.leaves,
+        "empty_leaves": stats.empty_leaves,
         "depth": stats.depth,
         "mean_leaf_primitives": stats.mean_leaf_primitives,
         "max_leaf_primitives": stats.max_leaf_primitives,
         "bytes": stats.bytes,
         "q": stats.q,
+        "levels": stats.levels.iter().map(|level| json!({
+            "nodes": level.nodes, "leaves": level.leaves, "references": level.references,
+        })).collect::<Vec<_>>(),
     })
 }

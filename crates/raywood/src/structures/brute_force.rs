@@ -1,14 +1,16 @@
 //! No structure at all: every ray tests every primitive. The reference that the others are held against.
 
 use super::AccelerationStructure;
+use crate::build::{PackedAabb, driver};
 use crate::traverse::nearest::{Nearest, blocks};
-use crate::{BuildError, BuildOptions, Geometry, Hit, PreparedRay, Probe, Ray, StructureStats};
-use crate::{ValidationError, build::driver};
+use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView};
+use crate::{PreparedRay, Probe, Ray, ValidationError};
 
 /// Every ray tests every primitive: O(N) a ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BruteForce {
     primitives: u32,
+    bounds: Aabb,
 }
 
 impl BruteForce {
@@ -18,8 +20,9 @@ impl BruteForce {
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, _: &BuildOptions) -> Result<Self, BuildError> {
-        let primitives = driver::primitive_bounds(geometry)?.len() as u32;
-        Ok(Self { primitives })
+        let boxes = driver::primitive_bounds(geometry)?;
+        let bounds = boxes.iter().copied().fold(PackedAabb::EMPTY, PackedAabb::union).into();
+        Ok(Self { primitives: boxes.len() as u32, bounds })
     }
 }
 
@@ -32,6 +35,7 @@ impl AccelerationStructure for BruteForce {
     ) -> Option<Hit> {
         let ray = PreparedRay::new(ray)?;
         let mut nearest = Nearest::new(&ray);
+        probe.nodes(1);
         probe.primitives(self.primitives as usize);
         for primitive in 0..self.primitives {
             nearest.test(geometry, &ray, primitive);
@@ -41,15 +45,26 @@ impl AccelerationStructure for BruteForce {
 
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
         let Some(ray) = PreparedRay::new(ray) else { return false };
+        probe.nodes(1);
         (0..self.primitives).any(|primitive| {
             probe.primitives(1);
             blocks(geometry, &ray, primitive)
         })
     }
 
-    fn stats(&self) -> StructureStats {
-        let primitives = self.primitives as usize;
-        StructureStats { primitives, references: primitives, ..StructureStats::default() }
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        if self.primitives > 0 {
+            let references = Some(self.primitives as usize);
+            visit(NodeView { bounds: self.bounds, level: 0, references });
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        0
+    }
+
+    fn primitives(&self) -> usize {
+        self.primitives as usize
     }
 
     fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

@@ -4,7 +4,7 @@ use super::AccelerationStructure;
 use crate::build::Builder;
 use crate::traverse::{closest::closest, occluded::occluded};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
-use crate::{StructureStats, ValidationError, Vec3};
+use crate::{NodeView, ValidationError, Vec3};
 
 /// A node of 32 bytes, `{ bounds.min, left_first, bounds.max, count }`: half a cache line, so that two children, which lie side by
 /// side, are 64 bytes.
@@ -156,8 +156,24 @@ impl AccelerationStructure for Bvh2 {
         occluded(self, geometry, ray, probe)
     }
 
-    fn stats(&self) -> StructureStats {
-        StructureStats::of_tree(self, &BuildOptions::default())
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        let mut pending = Vec::new();
+        pending.extend(self.nodes.first().map(|root| (root, 0)));
+        while let Some((node, level)) = pending.pop() {
+            let references = node.is_leaf().then_some(node.count() as usize);
+            visit(NodeView { bounds: node.bounds(), level, references });
+            if !node.is_leaf() {
+                pending.extend(self.children(node).map(|child| (child, level + 1)));
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.nodes()) + size_of_val(self.primitive_indices())
+    }
+
+    fn primitives(&self) -> usize {
+        self.primitive_indices.len()
     }
 
     fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

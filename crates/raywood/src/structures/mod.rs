@@ -16,7 +16,7 @@ pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;
 
-use crate::{Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
+use crate::{Geometry, Hit, NodeView, Probe, Ray, StructureStats, ValidationError};
 
 /// The most levels a tree may have, the root's counted: what the traversals' stacks hold.
 pub(crate) const MAX_DEPTH: usize = 64;
@@ -38,8 +38,23 @@ pub trait AccelerationStructure: Send + Sync {
     /// Whether the ray hits anything at `t_min <= t < t_max`. The probe is told what is tested.
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool;
 
-    /// Counts, depth, memory and quality. O(size of the structure).
-    fn stats(&self) -> StructureStats;
+    /// Shows every node or cell, parents before their children: the source of statistics and of pictures of the structure.
+    /// O(size of the structure).
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView));
+
+    /// Bytes of the structure, without the geometry.
+    fn bytes(&self) -> usize;
+
+    /// How many primitives the geometry has.
+    fn primitives(&self) -> usize;
+
+    /// Counts, levels, memory and quality. O(size of the structure).
+    fn stats(&self) -> StructureStats
+    where
+        Self: Sized,
+    {
+        StructureStats::of(self)
+    }
 
     /// Checks every invariant against the geometry. O(size of the structure); for tests.
     ///

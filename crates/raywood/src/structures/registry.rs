@@ -2,7 +2,7 @@
 
 use super::{AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid};
 use crate::build::Builder;
-use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats, ValidationError};
+use crate::{BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, ValidationError};
 
 /// Defines the kinds, their names, and the type that holds a structure of any kind.
 macro_rules! structures {
@@ -71,9 +71,21 @@ macro_rules! structures {
                 }
             }
 
-            fn stats(&self) -> StructureStats {
+            fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
                 match self {
-                    $(Self::$kind(structure) => structure.stats(),)*
+                    $(Self::$kind(structure) => structure.visit_nodes(visit),)*
+                }
+            }
+
+            fn bytes(&self) -> usize {
+                match self {
+                    $(Self::$kind(structure) => structure.bytes(),)*
+                }
+            }
+
+            fn primitives(&self) -> usize {
+                match self {
+                    $(Self::$kind(structure) => structure.primitives(),)*
                 }
             }
 

@@ -3,7 +3,7 @@
 use super::registry::AnyStructure;
 use super::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats};
-use crate::{SurfacePoint, ValidationError, parallel};
+use crate::{NodeView, SurfacePoint, ValidationError, parallel};
 
 /// A geometry with an acceleration structure over it whose kind is chosen at run time: for comparing. [`Bvh`](crate::Bvh) is the one for
 /// everyday use.
@@ -101,9 +101,14 @@ impl<G: Geometry> Structure<G> {
         self.geometry.surface_point(ray, hit)
     }
 
-    /// Counts, depth, memory and quality.
+    /// Counts, depth, memory and quality. O(size of the structure).
     pub fn stats(&self) -> StructureStats {
         self.structure.stats()
+    }
+
+    /// Shows every node or cell, parents before their children. O(size of the structure).
+    pub fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        self.structure.visit_nodes(visit);
     }
 
     /// Checks every invariant of the structure against the geometry; for tests.

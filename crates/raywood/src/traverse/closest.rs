@@ -24,6 +24,7 @@ pub(crate) fn closest<G: Geometry, P: Probe>(
     // Nodes to visit later, with the distance at which the ray enters them.
     let mut stack = Stack::<(u32, f32)>::new();
     loop {
+        probe.nodes(1);
         if node.is_leaf() {
             probe.primitives(node.count() as usize);
             for &primitive in tree.leaf_primitives(node) {

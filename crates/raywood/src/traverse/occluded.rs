@@ -24,6 +24,7 @@ pub(crate) fn occluded<G: Geometry, P: Probe>(
 
     let mut stack = Stack::<u32>::new();
     loop {
+        probe.nodes(1);
         if node.is_leaf() {
             for &primitive in tree.leaf_primitives(node) {
                 probe.primitives(1);

@@ -1,8 +1,18 @@
 //! Watching a traversal: the source of test counts and heat maps.
 
+use std::iter::Sum;
+use std::ops::{Add, AddAssign};
+
 /// Is told what a traversal does. The unit type `()` ignores it all and compiles to nothing.
 pub trait Probe {
-    /// Some boxes were tested against the ray.
+    /// Some nodes of a tree, or cells of a grid, were entered.
+    #[inline]
+    fn nodes(&mut self, count: usize) {
+        let _ = count;
+    }
+
+    /// Some boxes were tested against the ray. Steps over the planes of a grid or a kD-tree are not box tests: what they cost shows
+    /// in the number of [`nodes`](Self::nodes).
     #[inline]
     fn boxes(&mut self, count: usize) {
         let _ = count;
@@ -17,9 +27,11 @@ pub trait Probe {
 
 impl Probe for () {}
 
-/// A probe that counts.
+/// A probe that counts, over as many rays as it is handed to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
+    /// Nodes or cells entered.
+    pub nodes: u64,
     /// Boxes tested.
     pub boxes: u64,
     /// Primitives tested.
@@ -28,6 +40,11 @@ pub struct Counts {
 
 impl Probe for Counts {
     #[inline]
+    fn nodes(&mut self, count: usize) {
+        self.nodes += count as u64;
+    }
+
+    #[inline]
     fn boxes(&mut self, count: usize) {
         self.boxes += count as u64;
     }
@@ -35,5 +52,29 @@ impl Probe for Counts {
     #[inline]
     fn primitives(&mut self, count: usize) {
         self.primitives += count as u64;
+    }
+}
+
+impl Add for Counts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            nodes: self.nodes + other.nodes,
+            boxes: self.boxes + other.boxes,
+            primitives: self.primitives + other.primitives,
+        }
+    }
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sum for Counts {
+    fn sum<I: Iterator<Item = Self>>(counts: I) -> Self {
+        counts.fold(Self::default(), Self::add)
     }
 }

@@ -45,7 +45,6 @@ impl GridPool {
         let Cells { lattice, starts, references } = shape.grid_over(&content, SPARE_REFERENCES);
         Ok(Self {
             primitives: bounds.len(),
-            levels: 1,
             tried: 0,
             grids: vec![(lattice, 0)],
             starts,
@@ -93,7 +92,6 @@ impl GridPool {
         if divided.peek().is_none() {
             return;
         }
-        self.levels += 1;
         let (mut starts, mut references) = (vec![0], Vec::new());
         let mut appended = Vec::new();
         for place in 0..self.tried {

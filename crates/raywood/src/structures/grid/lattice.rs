@@ -77,6 +77,11 @@ impl Lattice {
         Self { min, max, cell, resolution }
     }
 
+    /// The box around all cells.
+    pub(super) fn bounds(&self) -> Aabb {
+        Aabb::new(self.min, self.max)
+    }
+
     /// How many cells there are.
     pub(super) fn cells(&self) -> usize {
         self.resolution.iter().map(|&n| n as usize).product()

@@ -4,7 +4,7 @@ use super::dda::walk;
 use super::lattice::Lattice;
 use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
-use crate::{Geometry, Hit, PreparedRay, Probe, Ray, StructureStats};
+use crate::{Geometry, Hit, NodeView, PreparedRay, Probe, Ray};
 
 /// Set in the only reference of a cell that holds a grid; the other bits are the grid's number. Primitive numbers leave it free.
 const IS_GRID: u32 = 1 << 31;
@@ -14,8 +14,6 @@ const IS_GRID: u32 = 1 << 31;
 pub(super) struct GridPool {
     /// How many primitives the geometry has.
     pub(super) primitives: usize,
-    /// How many grids lie within each other at most.
-    pub(super) levels: usize,
     /// How many of the first cells are as fine as they get.
     pub(super) tried: usize,
     /// Each grid's lattice and the place of its first cell. The first grid is the outermost; none if there is no primitive.
@@ -58,6 +56,7 @@ impl GridPool {
     ) -> Option<Hit> {
         let ray = PreparedRay::new(ray)?;
         let (mut nearest, mut mailbox) = (Nearest::new(&ray), Mailbox::new());
+        probe.nodes(1);
         self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
             for &primitive in primitives {
                 if mailbox.is_new(primitive) {
@@ -79,6 +78,7 @@ impl GridPool {
     ) -> bool {
         let Some(ray) = PreparedRay::new(ray) else { return false };
         let mut mailbox = Mailbox::new();
+        probe.nodes(1);
         let unblocked = self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
             for &primitive in primitives {
                 if mailbox.is_new(primitive) {
@@ -104,9 +104,10 @@ impl GridPool {
         visit: &mut impl FnMut(&[u32], &mut P) -> Option<f32>,
     ) -> Option<f32> {
         let Some((lattice, first_cell)) = self.grids.get(grid) else { return Some(t_max) };
+        probe.boxes(1);
         let mut t_max = t_max;
         walk(lattice, ray, t_max, |cell| {
-            probe.boxes(1);
+            probe.nodes(1);
             match self.cell(first_cell + cell) {
                 Cell::Primitives([]) => {}
                 Cell::Primitives(primitives) => t_max = visit(primitives, probe)?,
@@ -117,25 +118,31 @@ impl GridPool {
         Some(t_max)
     }
 
-    /// Counts, levels and memory. Cells that hold grids count as cells, not as leaves.
-    pub(super) fn stats(&self) -> StructureStats {
-        let mut stats = StructureStats {
-            primitives: self.primitives,
-            nodes: self.starts.len().saturating_sub(1),
-            depth: self.levels,
-            bytes: size_of_val(&self.grids[..])
-                + size_of_val(&self.starts[..])
-                + size_of_val(&self.references[..]),
-            ..StructureStats::default()
-        };
-        for place in 0..stats.nodes {
-            if let Cell::Primitives(primitives @ [_, ..]) = self.cell(place) {
-                stats.leaves += 1;
-                stats.references += primitives.len();
-                stats.max_leaf_primitives = stats.max_leaf_primitives.max(primitives.len());
+    /// Shows each grid and its cells. A cell that holds a grid has the grid in it, whose box is fitted to what lies in the cell.
+    pub(super) fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        let Some((outermost, _)) = self.grids.first() else { return };
+        visit(NodeView { bounds: outermost.bounds(), level: 0, references: None });
+        let mut pending = vec![(0, 1)];
+        while let Some((grid, level)) = pending.pop() {
+            let (lattice, first_cell) = &self.grids[grid];
+            for number in 0..lattice.cells() {
+                let bounds = lattice.cell_bounds(lattice.place(number));
+                let references = match self.cell(first_cell + number) {
+                    Cell::Primitives(primitives) => Some(primitives.len()),
+                    Cell::Grid(inner) => {
+                        pending.push((inner, level + 1));
+                        None
+                    }
+                };
+                visit(NodeView { bounds, level, references });
             }
         }
-        stats.mean_leaf_primitives = stats.references as f64 / stats.leaves.max(1) as f64;
-        stats
+    }
+
+    /// Bytes of all grids.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.grids[..])
+            + size_of_val(&self.starts[..])
+            + size_of_val(&self.references[..])
     }
 }

@@ -4,7 +4,7 @@ use super::build::Shape;
 use super::pool::GridPool;
 use crate::structures::AccelerationStructure;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
-use crate::{StructureStats, ValidationError};
+use crate::{NodeView, ValidationError};
 
 /// The most references a primitive.
 const DUPLICATION: u64 = 8;
@@ -48,8 +48,16 @@ impl AccelerationStructure for UniformGrid {
         self.0.occluded(geometry, ray, probe)
     }
 
-    fn stats(&self) -> StructureStats {
-        self.0.stats()
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        self.0.visit_nodes(visit);
+    }
+
+    fn bytes(&self) -> usize {
+        self.0.bytes()
+    }
+
+    fn primitives(&self) -> usize {
+        self.0.primitives
     }
 
     fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

@@ -1,46 +1,9 @@
-//! Measuring and checking a kD-tree.
+//! The invariants of the kD-tree, checked.
 
 use super::node::Content;
-use super::{KdTree, half_area, halves};
+use super::{KdTree, halves};
 use crate::structures::MAX_DEPTH;
-use crate::{Aabb, BuildOptions, Geometry, StructureStats, ValidationError, Vec3};
-
-/// Measures the tree; the options give the costs in `Q`, in which every node's box is its cell.
-pub(super) fn stats(tree: &KdTree, options: &BuildOptions) -> StructureStats {
-    let (c_aabb, c_tri) = (f64::from(options.node_cost), f64::from(options.primitive_cost));
-    let mut stats = StructureStats {
-        primitives: tree.primitives as usize,
-        references: tree.primitive_indices.len(),
-        nodes: tree.nodes.len(),
-        bytes: size_of_val(tree.nodes()) + size_of_val(tree.primitive_indices()),
-        ..StructureStats::default()
-    };
-    let root_area = half_area(&tree.bounds);
-    let mut q = 0.0;
-
-    // Depth first, with each node's cell and level.
-    let mut pending = Vec::new();
-    pending.extend(tree.nodes.first().map(|_| (0, tree.bounds, 1)));
-    while let Some((number, cell, level)) = pending.pop() {
-        let probability = if root_area > 0.0 { half_area(&cell) / root_area } else { 1.0 };
-        q += probability * c_aabb;
-        stats.depth = stats.depth.max(level);
-        match tree.nodes[number].content() {
-            Content::Leaf { count, .. } => {
-                q += probability * count as f64 * c_tri;
-                stats.leaves += 1;
-                stats.max_leaf_primitives = stats.max_leaf_primitives.max(count);
-            }
-            Content::Plane { axis, position, left } => {
-                let [below, above] = halves(&cell, axis, position);
-                pending.extend([(left, below, level + 1), (left + 1, above, level + 1)]);
-            }
-        }
-    }
-    stats.q = Some(q);
-    stats.mean_leaf_primitives = stats.references as f64 / stats.leaves.max(1) as f64;
-    stats
-}
+use crate::{Aabb, Geometry, ValidationError, Vec3};
 
 /// Checks the tree against the geometry it was built over: nodes and references within bounds, each node reached once, planes inside
 /// their cells, leaves in ascending order and not too deep, and every primitive listed where it must be ([`check_primitive`]).

@@ -10,7 +10,8 @@ pub use node::KdNode;
 
 use super::AccelerationStructure;
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
-use crate::{StructureStats, ValidationError};
+use crate::{NodeView, ValidationError};
+use node::Content;
 
 /// A kD-tree (Bentley 1975; for rays MacDonald and Booth 1990; Wald and Havran 2006).
 ///
@@ -61,12 +62,6 @@ fn halves(cell: &Aabb, axis: usize, position: f32) -> [Aabb; 2] {
     [Aabb::new(cell.min, below), Aabb::new(above, cell.max)]
 }
 
-/// Half the surface area in double precision, where no finite box overflows or vanishes.
-fn half_area(cell: &Aabb) -> f64 {
-    let [x, y, z] = [0, 1, 2].map(|axis| f64::from(cell.max[axis]) - f64::from(cell.min[axis]));
-    x * y + y * z + z * x
-}
-
 impl AccelerationStructure for KdTree {
     #[inline]
     fn intersect<G: Geometry, P: Probe>(
@@ -83,8 +78,31 @@ impl AccelerationStructure for KdTree {
         traverse::occluded(self, geometry, ray, probe)
     }
 
-    fn stats(&self) -> StructureStats {
-        check::stats(self, &BuildOptions::default())
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        let mut pending = Vec::new();
+        pending.extend(self.nodes.first().map(|&root| (root, self.bounds, 0)));
+        while let Some((node, bounds, level)) = pending.pop() {
+            match node.content() {
+                Content::Leaf { count, .. } => {
+                    visit(NodeView { bounds, level, references: Some(count) });
+                }
+                Content::Plane { axis, position, left } => {
+                    visit(NodeView { bounds, level, references: None });
+                    let halves = halves(&bounds, axis, position);
+                    for (child, half) in self.nodes[left..left + 2].iter().zip(halves) {
+                        pending.push((*child, half, level + 1));
+                    }
+                }
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.nodes()) + size_of_val(self.primitive_indices())
+    }
+
+    fn primitives(&self) -> usize {
+        self.primitives as usize
     }
 
     fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

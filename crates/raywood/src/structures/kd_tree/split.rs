@@ -1,7 +1,7 @@
 //! Choosing a plane by the surface area heuristic: MacDonald and Booth 1990; the sweep over events and the side of planar primitives
 //! after Wald and Havran, "On building fast kd-Trees for Ray Tracing, and on doing that in O(N log N)", 2006.
 
-use super::{half_area, halves};
+use super::halves;
 use crate::{Aabb, BuildOptions, parallel};
 
 /// Sets larger than this are binned first.
@@ -54,7 +54,7 @@ impl CostModel<'_> {
         if !(self.cell.min[axis] < position && position < self.cell.max[axis]) {
             return None;
         }
-        let [below, above] = halves(self.cell, axis, position).map(|half| half_area(&half));
+        let [below, above] = halves(self.cell, axis, position).map(|half| half.half_area());
         let [left, planar, right] = counts;
         let cost = |left: usize, right: usize| {
             let tests = (below * left as f64 + above * right as f64) / self.area;
@@ -83,7 +83,7 @@ pub(super) fn choose(
 ) -> Option<Split> {
     let model = CostModel {
         cell,
-        area: half_area(cell),
+        area: cell.half_area(),
         node_cost: f64::from(options.node_cost),
         primitive_cost: f64::from(options.primitive_cost),
         empty_bonus: f64::from(options.kd_empty_bonus),

@@ -40,6 +40,7 @@ pub(super) fn closest<G: Geometry, P: Probe>(
     probe: &mut P,
 ) -> Option<Hit> {
     let ray = PreparedRay::new(ray)?;
+    probe.boxes(1);
     let mut walk = Walk::new(tree, &ray)?;
     let mut nearest = Nearest::new(&ray);
     let mut mailbox = Mailbox::new();
@@ -62,6 +63,7 @@ pub(super) fn occluded<G: Geometry, P: Probe>(
     probe: &mut P,
 ) -> bool {
     let Some(ray) = PreparedRay::new(ray) else { return false };
+    probe.boxes(1);
     let Some(mut walk) = Walk::new(tree, &ray) else { return false };
     let mut mailbox = Mailbox::new();
     while let Some(leaf) = walk.next_leaf(ray.t_max, probe) {
@@ -125,7 +127,7 @@ impl<'a> Walk<'a> {
                 continue;
             }
             loop {
-                probe.boxes(1);
+                probe.nodes(1);
                 let node: KdNode = self.tree.nodes[number as usize];
                 let (axis, position, left) = match node.content() {
                     Content::Plane { axis, position, left } => (axis, position, left as u32),

@@ -1,46 +1,10 @@
-//! Statistics and invariants of the octree.
+//! The invariants of the octree, checked.
 
 use super::cell::{Placement, middle, octant};
 use super::{MAX_LEVELS, Octree};
-use crate::build::PackedAabb;
-use crate::{Aabb, BuildOptions, Geometry, StructureStats, ValidationError};
+use crate::{Geometry, ValidationError};
 
 impl Octree {
-    /// Measures the tree; the options give the costs in `Q`.
-    pub(super) fn measure(&self, options: &BuildOptions) -> StructureStats {
-        let (c_aabb, c_tri) = (f64::from(options.node_cost), f64::from(options.primitive_cost));
-        let mut stats = StructureStats {
-            primitives: self.primitives as usize,
-            references: self.references.len(),
-            nodes: self.nodes.len(),
-            bytes: size_of_val(&self.nodes[..]) + size_of_val(&self.references[..]),
-            ..StructureStats::default()
-        };
-        let half_area = |cell: &Aabb| PackedAabb::from(*cell).half_area();
-        let mut q = 0.0;
-
-        // Depth first, with each node's cell and level.
-        let mut pending = Vec::new();
-        pending.extend(self.nodes.first().map(|&root| (root, self.bounds, 1)));
-        while let Some((node, cell, level)) = pending.pop() {
-            let root_area = half_area(&self.bounds);
-            let probability = if root_area > 0.0 { half_area(&cell) / root_area } else { 1.0 };
-            q += probability * (c_aabb + node.count() as f64 * c_tri);
-            stats.depth = stats.depth.max(level);
-            stats.leaves += usize::from(node.count() > 0);
-            stats.max_leaf_primitives = stats.max_leaf_primitives.max(node.count());
-
-            let middle = middle(&cell);
-            for number in (0..8).filter(|number| node.octants() >> number & 1 == 1) {
-                let child = self.nodes[node.child(number)];
-                pending.push((child, octant(&cell, middle, number), level + 1));
-            }
-        }
-        stats.q = Some(q);
-        stats.mean_leaf_primitives = stats.references as f64 / stats.leaves.max(1) as f64;
-        stats
-    }
-
     /// Checks that every node is reached once and not too deep, and that every leaf refers to exactly the primitives that overlap its
     /// cell, in order. That octants fill their cell needs no check: their boxes are computed, not stored.
     pub(super) fn check<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

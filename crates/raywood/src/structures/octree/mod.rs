@@ -9,7 +9,8 @@ use super::AccelerationStructure;
 use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, Probe, Ray};
-use crate::{StructureStats, ValidationError};
+use crate::{NodeView, ValidationError};
+use cell::{middle, octant};
 use traverse::walk;
 
 /// The most levels of an octree, the root's counted: below them cells are as fine as single precision resolves the root.
@@ -139,8 +140,27 @@ impl AccelerationStructure for Octree {
         blocked
     }
 
-    fn stats(&self) -> StructureStats {
-        self.measure(&BuildOptions::default())
+    fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
+        let mut pending = Vec::new();
+        pending.extend(self.nodes.first().map(|&root| (root, self.bounds, 0)));
+        while let Some((node, bounds, level)) = pending.pop() {
+            let references = (node.count() > 0).then_some(node.count());
+            visit(NodeView { bounds, level, references });
+
+            let middle = middle(&bounds);
+            for number in (0..8).filter(|number| node.octants() >> number & 1 == 1) {
+                let child = self.nodes[node.child(number)];
+                pending.push((child, octant(&bounds, middle, number), level + 1));
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.references[..])
+    }
+
+    fn primitives(&self) -> usize {
+        self.primitives as usize
     }
 
     fn validate<G: Geometry>(&self, geometry: &G) -> Result<(), ValidationError> {

@@ -38,6 +38,7 @@ pub(super) fn walk<P: Probe>(
     let mut height = 0;
     let (mut node, mut cell) = (root, tree.bounds);
     loop {
+        probe.nodes(1);
         let octants = node.octants();
         if octants == 0 {
             let Some(nearer) = visit(probe, tree.leaf_primitives(&node)) else { return };
