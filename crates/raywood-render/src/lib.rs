@@ -28,5 +28,6 @@ pub use prepared::{PreparedScene, Surfaces};
 pub use progress::Progress;
 pub use render::render;
 pub use sampling::PixelSamples;
+pub use shadows::shadow_ray;
 pub use stats::{RayCounts, RenderStats};
 pub use view::{Setting, View, choose_camera, choose_lights, default_view};

@@ -39,8 +39,17 @@ impl<'a> PreparedScene<'a> {
     ///
     /// The structure cannot be built.
     pub fn with_structure(scene: &'a Scene, kind: StructureKind) -> Result<Self, BuildError> {
-        let surfaces = Joined { first: &scene.mesh.triangles, second: &scene.spheres };
-        let structure = Structure::build(kind, surfaces, &BuildOptions::default())?;
+        let structure = Structure::build(kind, Self::surfaces(scene), &BuildOptions::default())?;
+        Ok(Self::from_structure(scene, structure))
+    }
+
+    /// All surfaces of a scene, for a structure over them.
+    pub fn surfaces(scene: &'a Scene) -> Surfaces<'a> {
+        Joined { first: &scene.mesh.triangles, second: &scene.spheres }
+    }
+
+    /// Takes a structure over the scene's [surfaces](Self::surfaces) that is already there.
+    pub fn from_structure(scene: &'a Scene, structure: Structure<Surfaces<'a>>) -> Self {
         // The default comes last, for the surfaces without a material.
         let materials: Vec<_> = scene
             .materials
@@ -58,7 +67,7 @@ impl<'a> PreparedScene<'a> {
             transmissive_bounds: Vec::new(),
         };
         prepared.transmissive_bounds = prepared.find_transmissive_bounds();
-        Ok(prepared)
+        prepared
     }
 
     /// The scene as it was given.

@@ -1,11 +1,11 @@
 //! How much of a light reaches a point: the shadow ray, which what is transparent colours and weakens.
 
 use raywood::{Aabb, Ray, SurfacePoint};
-use raywood_scene::Rgb;
+use raywood_scene::{Light, Rgb};
 
 use crate::PreparedScene;
 use crate::fresnel::dielectric;
-use crate::lights::Illumination;
+use crate::lights::{Illumination, illuminate};
 use crate::prepared::SurfaceMaterial;
 use crate::stats::RayCounts;
 
@@ -53,6 +53,11 @@ pub(crate) fn visibility(
         counts.shadow += 1;
     }
     Rgb::ZERO
+}
+
+/// The ray that asks whether a light reaches a surface; `None` where the light does not shine.
+pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Option<Ray> {
+    illuminate(light, point.position).map(|light| ray_towards(point, &light))
 }
 
 /// The ray from a surface to a light.

@@ -58,7 +58,7 @@ pub(crate) fn fill<I: Sync, O: Send>(inputs: &[I], outputs: &mut [O], f: impl Fn
     inputs
         .par_iter()
         .zip_eq(outputs)
-        .with_min_len(256)
+        .with_min_len(16)
         .for_each(|(input, output)| *output = f(input));
     #[cfg(not(feature = "rayon"))]
     for (input, output) in inputs.iter().zip(outputs) {
