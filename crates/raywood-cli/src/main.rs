@@ -8,6 +8,7 @@ mod parse;
 mod print;
 mod progress_bar;
 mod scene_source;
+mod view_args;
 
 use std::process::ExitCode;
 

@@ -3,21 +3,21 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use raywood::{StructureKind, StructureStats, Vec3};
+use raywood::{StructureKind, StructureStats};
 use raywood_render::{
-    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, choose_camera,
-    choose_lights, render, write_png,
+    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, render, write_png,
 };
-use raywood_scene::{Camera, Light, LightKind, Rgb, Scene, ambient};
+use raywood_scene::Scene;
 use serde_json::{Value, json};
 
 use super::{info, thread_pool};
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::{Point, PointLight, Size, field_of_view, structure_kind};
+use crate::parse::{Size, structure_kind};
 use crate::print::{self, thousands};
 use crate::progress_bar::{during_rendering, during_step};
 use crate::scene_source::{self, Loaded};
+use crate::view_args::ViewArgs;
 
 /// Render a model file or a built-in scene to a PNG picture.
 #[derive(clap::Args)]
@@ -56,33 +56,8 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Where the eye is
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    eye: Option<Point>,
-
-    /// The point in the middle of the picture
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    target: Option<Point>,
-
-    /// The direction that is up
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    up: Option<Point>,
-
-    /// Field of view from bottom to top
-    #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
-    fov: Option<f32>,
-
-    /// The scene's camera to use
-    ///
-    /// By its number, from 1, or its name; `raywood info` lists them. Else it is the first.
-    #[arg(long, value_name = "N|NAME")]
-    camera: Option<String>,
-
-    /// Point light; may be repeated
-    ///
-    /// Takes the place of the scene's lights, with a little ambient light. The strength S is relative: 1, the default, fully lights a surface as far away as the middle of the picture.
-    #[arg(long, value_name = "X,Y,Z[,S]", allow_hyphen_values = true)]
-    light: Vec<PointLight>,
+    #[command(flatten)]
+    view: ViewArgs,
 
     /// Transparent things cast black shadows
     ///
@@ -138,7 +113,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let Loaded { mut scene, time: load } = loaded;
-    scene.up = args.up.map(|point| point.0).or(scene.up);
+    args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
     let prepare = || PreparedScene::with_structure(&scene, kind);
@@ -147,7 +122,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let build = started.elapsed();
 
     let started = Instant::now();
-    let choose = || view(args, &scene, &prepared);
+    let aspect = args.size.width as f32 / args.size.height as f32;
+    let choose = || args.view.view(&prepared, aspect);
     let View { camera, lights } = during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
     let progress = Progress::new();
@@ -187,57 +163,6 @@ fn output_file(args: &Args) -> Result<OutputFile, Failure> {
         return Err(Failure::BadInput(message));
     }
     OutputFile::new(path)
-}
-
-/// The camera and lights: those that the command line gives, else the scene's, else chosen ones; lights for the camera that is used.
-fn view(args: &Args, scene: &Scene, prepared: &PreparedScene<'_>) -> Result<View, Failure> {
-    let mut camera = match (&args.camera, scene.cameras.first()) {
-        (Some(wanted), _) => camera_called(wanted, scene)?,
-        (None, Some(first)) => first.clone(),
-        (None, None) => {
-            let aspect = args.size.width as f32 / args.size.height as f32;
-            choose_camera(prepared, aspect)
-        }
-    };
-    let or_given = |value: Vec3, given: Option<Point>| given.map_or(value, |point| point.0);
-    camera.eye = or_given(camera.eye, args.eye);
-    camera.target = or_given(camera.target, args.target);
-    camera.up = or_given(camera.up, args.up);
-    camera.fov_y = args.fov.unwrap_or(camera.fov_y);
-
-    let point_light = |light: &PointLight| {
-        let to_target = camera.target - light.position;
-        Light {
-            name: String::new(),
-            kind: LightKind::Point { position: light.position },
-            intensity: Rgb::splat(light.strength * to_target.dot(to_target)),
-        }
-    };
-    let lights = if !args.light.is_empty() {
-        args.light.iter().map(point_light).chain([ambient(0.15)]).collect()
-    } else if !scene.lights.is_empty() {
-        scene.lights.clone()
-    } else {
-        choose_lights(prepared, &camera)
-    };
-    Ok(View { camera, lights })
-}
-
-/// The scene's camera of a number, from 1, or a name.
-fn camera_called(wanted: &str, scene: &Scene) -> Result<Camera, Failure> {
-    let number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
-    let by_number = number.and_then(|index| scene.cameras.get(index));
-    let camera = by_number.or_else(|| scene.cameras.iter().find(|camera| camera.name == wanted));
-    camera.cloned().ok_or_else(|| no_such_camera(wanted, scene))
-}
-
-fn no_such_camera(wanted: &str, scene: &Scene) -> Failure {
-    let known: Vec<_> = (1..)
-        .zip(&scene.cameras)
-        .map(|(number, camera)| format!("{number} {}", camera.name))
-        .collect();
-    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    Failure::BadInput(format!("{}: has no camera `{wanted}`; its cameras: {known}", scene.name))
 }
 
 impl Report<'_> {
