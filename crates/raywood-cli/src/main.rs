@@ -1,6 +1,7 @@
 //! The command `raywood`: a model file in, a ray-traced picture out.
 
 mod commands;
+mod exporters;
 mod failure;
 mod interrupt;
 mod output_file;

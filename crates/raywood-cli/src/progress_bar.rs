@@ -12,10 +12,17 @@ const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs a step of unknown length while its name is shown.
 pub(crate) fn during_step<T>(name: &str, step: impl FnOnce() -> T) -> T {
+    during_steps(|say| {
+        say(name);
+        step()
+    })
+}
+
+/// Runs several steps, each of which says its name when it begins.
+pub(crate) fn during_steps<T>(steps: impl FnOnce(&mut (dyn FnMut(&str) + Send)) -> T) -> T {
     let line = new_line("{spinner} {msg} {elapsed}", None);
-    line.set_message(name.to_owned());
     line.enable_steady_tick(INTERVAL);
-    let result = step();
+    let result = steps(&mut |name| line.set_message(name.to_owned()));
     line.finish_and_clear();
     result
 }

@@ -1,59 +1,13 @@
 //! The command as a user meets it: what it writes, says and exits with.
 
+mod support;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use raywood_testkit::image::Picture;
-use serde_json::Value;
-
-/// The command, started in a folder.
-fn raywood(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_raywood"));
-    command.current_dir(folder).stdin(Stdio::null());
-    command
-}
-
-/// Runs the command with arguments separated by spaces.
-fn run(folder: &Path, arguments: &str) -> Output {
-    raywood(folder).args(arguments.split_whitespace()).output().expect("the command starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("the command ends by itself")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("text")
-}
-
-fn json(output: &Output) -> Value {
-    assert_eq!(code(output), 0, "{}", stderr(output));
-    serde_json::from_slice(&output.stdout).expect("JSON")
-}
-
-/// A new, empty folder.
-fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a folder");
-    path
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("text")).collect()
-}
-
-/// A small model: one triangle.
-fn write_triangle(folder: &Path) {
-    fs::write(folder.join("triangle.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a file");
-}
+use support::{code, files, folder, json, raywood, run, stderr, stdout, write_triangle};
 
 #[test]
 fn every_builtin_renders_to_a_picture() {
@@ -234,7 +188,7 @@ fn a_picture_of_nothing_is_said_to_be_one() {
 #[test]
 fn help_fits_a_screen() {
     let folder = folder("help");
-    for arguments in ["-h", "render -h", "info -h", "scenes -h"] {
+    for arguments in ["-h", "render -h", "compare -h", "info -h", "scenes -h"] {
         let text = stdout(&run(&folder, arguments));
         let lines = text.lines().count();
         assert!((5..=24).contains(&lines), "{arguments} has {lines} lines:\n{text}");

@@ -1,9 +1,12 @@
 //! Experiments with acceleration structures on scenes: [sets of rays](ray_sets) as renderings have them, [fair timing](timing), and the
 //! [comparison](compare) of structures on the same rays.
 
+mod comparison;
 pub mod ray_sets;
 mod rng;
 pub mod timing;
 
+pub use comparison::{Answer, CompareError, CompareOptions, Comparison, Mismatch};
+pub use comparison::{RaySetSummary, StructureReport, Traces, compare};
 pub use ray_sets::{RayKind, RaySet};
 pub use timing::Timing;

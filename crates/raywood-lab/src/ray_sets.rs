@@ -59,10 +59,10 @@ pub struct RaySet {
 }
 
 impl RaySet {
-    /// At most so many of the rays, spread evenly over the set.
-    pub fn sample(&self, count: usize) -> Vec<Ray> {
+    /// The numbers of so many of the rays, or of all if they are fewer, spread evenly over the set.
+    pub fn sample(&self, count: usize) -> Vec<usize> {
         let count = count.min(self.rays.len());
-        (0..count).map(|i| self.rays[i * self.rays.len() / count]).collect()
+        (0..count).map(|i| i * self.rays.len() / count).collect()
     }
 }
 

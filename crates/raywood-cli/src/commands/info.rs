@@ -6,6 +6,7 @@ use raywood_scene::{LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
 
 use super::thread_pool;
+use crate::exporters;
 use crate::failure::Failure;
 use crate::parse::structure_kind;
 use crate::print::{self, thousands};
@@ -165,7 +166,7 @@ fn as_json(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &Structu
             "up": camera.up.to_array(), "fov_y_degrees": camera.fov_y,
         })).collect::<Vec<_>>(),
         "warnings": scene.warnings,
-        "structure": structure(kind, stats),
+        "structure": exporters::structure(kind, stats),
     })
 }
 
@@ -178,24 +179,4 @@ fn materials(scene: &Scene) -> Vec<Value> {
         })
     };
     scene.materials.iter().map(one).collect()
-}
-
-/// Statistics of a structure, as every command prints them for machines.
-pub(crate) fn structure(kind: StructureKind, stats: &StructureStats) -> Value {
-    json!({
-        "name": kind.name(),
-        "primitives": stats.primitives,
-        "references": stats.references,
-        "nodes": stats.nodes,
-        "leaves": stats.leaves,
-        "empty_leaves": stats.empty_leaves,
-        "depth": stats.depth,
-        "mean_leaf_primitives": stats.mean_leaf_primitives,
-        "max_leaf_primitives": stats.max_leaf_primitives,
-        "bytes": stats.bytes,
-        "q": stats.q,
-        "levels": stats.levels.iter().map(|level| json!({
-            "nodes": level.nodes, "leaves": level.leaves, "references": level.references,
-        })).collect::<Vec<_>>(),
-    })
 }

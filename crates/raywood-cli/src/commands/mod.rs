@@ -1,5 +1,6 @@
 //! The subcommands, one per file. To add one, write its file and name it here.
 
+mod compare;
 mod info;
 mod render;
 mod scenes;
@@ -12,6 +13,7 @@ use crate::failure::Failure;
 #[derive(Subcommand)]
 pub(crate) enum Command {
     Render(render::Args),
+    Compare(compare::Args),
     Info(info::Args),
     Scenes(scenes::Args),
 }
@@ -21,6 +23,7 @@ impl Command {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(args),
+            Self::Compare(args) => compare::run(args),
             Self::Info(args) => info::run(args),
             Self::Scenes(args) => scenes::run(args),
         }

@@ -10,7 +10,8 @@ use raywood_render::{
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
-use super::{info, thread_pool};
+use super::thread_pool;
+use crate::exporters;
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
 use crate::parse::{Size, structure_kind};
@@ -240,7 +241,7 @@ impl Report<'_> {
                 "total": rays.total(),
             },
             "million_rays_per_second": render.million_rays_per_second(),
-            "structure": info::structure(*kind, structure),
+            "structure": exporters::structure(*kind, structure),
         })
     }
 }

@@ -7,7 +7,7 @@ use crate::{Aabb, Hit, Ray};
 ///
 /// One structure over both finds the closest hit among them, and which kind a primitive is costs one comparison.
 /// Nest it for more than two kinds.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Joined<A, B> {
     /// The geometry whose primitives come first.
     pub first: A,

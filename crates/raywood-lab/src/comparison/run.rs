@@ -1,0 +1,243 @@
+//! Building the structures, checking their answers, timing them by turns.
+
+use rayon::prelude::*;
+use raywood::{BuildOptions, Counts, Geometry, Ray, Structure, StructureKind};
+use raywood_render::{PreparedScene, Surfaces, View};
+
+use super::{Answer, CompareError, CompareOptions, Comparison, Mismatch};
+use super::{RaySetSummary, StructureReport, Traces};
+use crate::ray_sets::{RayKind, RaySet, ray_sets};
+use crate::timing::{Timing, seconds, take_turns};
+
+/// A structure that is built this often is built no more.
+const BUILDS: usize = 3;
+
+/// Nor is one whose builds have taken so many seconds together.
+const BUILD_SECONDS: f64 = 4.0;
+
+/// A round in which a structure traces a set of rays shall not take much longer; a slower structure traces a sample of the set.
+const ROUND_SECONDS: f64 = 0.2;
+
+/// The rays by which the speed of a structure is guessed, for each thread, and how often it gets a chance to be fast.
+const PILOT_RAYS: usize = 16;
+const PILOT_ROUNDS: usize = 4;
+
+/// Builds the structures over the scene and has each trace the same rays, on the threads of the current rayon pool.
+///
+/// Times are medians of rounds in which all structures take turns. Every hit of every structure is held against those of the structure in
+/// `reference`, whose own are held against brute force if that is among the structures: all are equal, to the bit, or the comparison is an
+/// error. Brute force, and any other structure that would take too long, traces a sample of the rays. All structures are in
+/// memory at once. `step` is told what is being done.
+///
+/// # Errors
+///
+/// A structure that cannot be built, a camera through which nothing can be seen, or structures that disagree.
+pub fn compare<'a>(
+    reference: &PreparedScene<'a>,
+    view: &View,
+    options: &CompareOptions,
+    mut step: impl FnMut(&str),
+) -> Result<Comparison, CompareError> {
+    step("choosing rays");
+    let sets = ray_sets(reference, view, options.aspect, options.rays);
+    let sets = sets.map_err(CompareError::Camera)?;
+    let expected: Vec<_> =
+        sets.iter().map(|set| answers(reference.structure(), set.kind, &set.rays)).collect();
+
+    let surfaces = PreparedScene::surfaces(reference.scene());
+    let (structures, builds) = build(&options.kinds, surfaces, &mut step)?;
+    let mut reports: Vec<_> = structures
+        .iter()
+        .zip(builds)
+        .map(|(structure, build)| StructureReport {
+            kind: structure.kind(),
+            build,
+            stats: structure.stats(),
+            traces: Vec::new(),
+        })
+        .collect();
+
+    for (set, expected) in sets.iter().zip(&expected) {
+        // Find what each structure can trace in time, and hold its answers against the reference's.
+        let mut samples = Vec::new();
+        for structure in &structures {
+            step(&format!("checking {} rays: {}", set.kind.name(), structure.kind().name()));
+            let sample = set.sample(affordable(structure, set));
+            check(reference.structure(), structure, set, expected, &sample)?;
+            samples.push(sample.into_iter().map(|index| set.rays[index]).collect::<Vec<_>>());
+        }
+
+        step(&format!("timing {} rays", set.kind.name()));
+        let timings = take_turns(structures.len(), options.rounds.max(1), |number| {
+            Some(trace(&structures[number], set.kind, &samples[number]))
+        });
+        for (number, timing) in timings.into_iter().flatten().enumerate() {
+            let rays = &samples[number];
+            let counts = count(&structures[number], set.kind, rays);
+            let traces = Traces { kind: set.kind, rays: rays.len(), counts, timing };
+            reports[number].traces.push(traces);
+        }
+    }
+
+    let ray_sets = sets.iter().zip(&expected).map(|(set, expected)| RaySetSummary {
+        kind: set.kind,
+        rays: set.rays.len(),
+        hits: expected.iter().filter(|answer| answer.hits()).count(),
+    });
+    Ok(Comparison {
+        primitives: surfaces.len(),
+        threads: rayon::current_num_threads(),
+        ray_sets: ray_sets.collect(),
+        structures: reports,
+    })
+}
+
+/// A structure over a scene.
+type SceneStructure<'a> = Structure<Surfaces<'a>>;
+
+/// Builds all structures, by turns and several times.
+fn build<'a>(
+    kinds: &[StructureKind],
+    surfaces: Surfaces<'a>,
+    step: &mut impl FnMut(&str),
+) -> Result<(Vec<SceneStructure<'a>>, Vec<Timing>), CompareError> {
+    let mut structures: Vec<Option<SceneStructure<'a>>> = vec![None; kinds.len()];
+    let mut times = vec![Vec::new(); kinds.len()];
+    for _ in 0..BUILDS {
+        for (number, &kind) in kinds.iter().enumerate() {
+            if times[number].iter().sum::<f64>() > BUILD_SECONDS {
+                continue;
+            }
+            step(&format!("building {}", kind.name()));
+            // Free the last one's memory first, outside the time that counts.
+            structures[number] = None;
+            let options = BuildOptions::default();
+            let (time, built) = seconds(|| Structure::build(kind, surfaces, &options));
+            structures[number] = Some(built.map_err(|error| CompareError::Build(kind, error))?);
+            times[number].push(time);
+        }
+    }
+    let structures = structures.into_iter().flatten().collect();
+    Ok((structures, times.into_iter().map(Timing::new).collect()))
+}
+
+/// How many of the rays the structure can trace in a round: all, but of a slow structure only what a few rays make expect.
+fn affordable(structure: &SceneStructure<'_>, set: &RaySet) -> usize {
+    let few = PILOT_RAYS * rayon::current_num_threads();
+    let pilot: Vec<_> = set.sample(few).into_iter().map(|index| set.rays[index]).collect();
+    // A machine that does other things too makes a few rays look slow now and then, but not again and again.
+    let all = set.rays.len() as f64;
+    let affordable = (0..PILOT_ROUNDS).find_map(|_| {
+        let per_ray = trace(structure, set.kind, &pilot) / pilot.len().max(1) as f64;
+        let rays = ROUND_SECONDS / per_ray.max(1e-9);
+        // Few and cold, they are slower than most.
+        (4.0 * rays >= all).then_some(set.rays.len())
+    });
+    affordable.unwrap_or_else(|| {
+        let per_ray = trace(structure, set.kind, &pilot) / pilot.len().max(1) as f64;
+        ((ROUND_SECONDS / per_ray.max(1e-9)) as usize).clamp(few, set.rays.len().max(few))
+    })
+}
+
+/// Holds the structure's answers to a sample of the rays, given by number, against the reference's.
+fn check(
+    reference: &SceneStructure<'_>,
+    structure: &SceneStructure<'_>,
+    set: &RaySet,
+    expected: &[Answer],
+    sample: &[usize],
+) -> Result<(), CompareError> {
+    let rays: Vec<_> = sample.iter().map(|&index| set.rays[index]).collect();
+    let found = answers(structure, set.kind, &rays);
+    let pairs = found.into_iter().zip(sample).zip(&rays);
+    for ((found, &index), &ray) in pairs {
+        if found != expected[index] {
+            let structures = [reference.kind(), structure.kind()];
+            let answers = [expected[index], found];
+            let mismatch = Mismatch { kind: set.kind, ray, structures, answers };
+            return Err(CompareError::Mismatch(Box::new(mismatch)));
+        }
+    }
+    Ok(())
+}
+
+/// What the structure says of each ray.
+fn answers(structure: &SceneStructure<'_>, kind: RayKind, rays: &[Ray]) -> Vec<Answer> {
+    if kind.any_hit() {
+        let mut blocked = vec![false; rays.len()];
+        structure.occluded_batch(rays, &mut blocked);
+        blocked.into_iter().map(Answer::Any).collect()
+    } else {
+        let mut hits = vec![None; rays.len()];
+        structure.intersect_batch(rays, &mut hits);
+        hits.into_iter().map(Answer::Closest).collect()
+    }
+}
+
+/// The seconds that the structure takes for the rays.
+fn trace(structure: &SceneStructure<'_>, kind: RayKind, rays: &[Ray]) -> f64 {
+    if kind.any_hit() {
+        let mut blocked = vec![false; rays.len()];
+        seconds(|| structure.occluded_batch(rays, &mut blocked)).0
+    } else {
+        let mut hits = vec![None; rays.len()];
+        seconds(|| structure.intersect_batch(rays, &mut hits)).0
+    }
+}
+
+/// What the structure visits and tests for the rays, all together.
+fn count(structure: &SceneStructure<'_>, kind: RayKind, rays: &[Ray]) -> Counts {
+    let one = |ray: &Ray| {
+        let mut counts = Counts::default();
+        if kind.any_hit() {
+            structure.occluded_probed(ray, &mut counts);
+        } else {
+            structure.intersect_probed(ray, &mut counts);
+        }
+        counts
+    };
+    rays.par_iter().map(one).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use raywood::{Hit, Vec3};
+    use raywood_render::default_view;
+    use raywood_scene::builtin;
+
+    use super::*;
+
+    #[test]
+    fn a_wrong_answer_is_an_error_that_names_the_ray() {
+        let scene = builtin("terrain?n=16").expect("a scene");
+        let prepared = PreparedScene::new(&scene).expect("it builds");
+        let view = default_view(&prepared, 1.6);
+        for set in ray_sets(&prepared, &view, 1.6, 640).expect("a camera") {
+            let structure = prepared.structure();
+            let mut expected = answers(structure, set.kind, &set.rays);
+            let sample = set.sample(64);
+            let check = |expected: &[Answer]| check(structure, structure, &set, expected, &sample);
+            assert_eq!(check(&expected), Ok(()));
+
+            // A wrong answer outside the sample goes unnoticed, one inside it does not.
+            let (inside, outside) = (sample[40], sample[40] + 1);
+            let wrong = |answer: Answer| match answer {
+                Answer::Any(blocked) => Answer::Any(!blocked),
+                Answer::Closest(Some(hit)) => {
+                    Answer::Closest(Some(Hit { t: hit.t.next_up(), ..hit }))
+                }
+                Answer::Closest(None) => {
+                    Answer::Closest(Some(Hit { t: 1.0, u: 0.0, v: 0.0, primitive: 7, instance: 0 }))
+                }
+            };
+            expected[outside] = wrong(expected[outside]);
+            assert_eq!(check(&expected), Ok(()));
+            expected[inside] = wrong(expected[inside]);
+            let error = check(&expected).expect_err("the answers differ");
+            let Vec3 { x, .. } = set.rays[inside].direction;
+            let text = error.to_string();
+            assert!(text.contains(&format!("along ({x:?}, ")), "{text}");
+            assert!(text.contains(set.kind.name()) && text.contains("bvh-sah-binned"), "{text}");
+        }
+    }
+}
