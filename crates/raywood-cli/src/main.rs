@@ -8,6 +8,8 @@ mod output_file;
 mod parse;
 mod print;
 mod progress_bar;
+#[allow(dead_code)]
+mod report;
 mod scene_source;
 mod view_args;
 

@@ -2,6 +2,7 @@
 //! [comparison](compare) of structures on the same rays.
 
 mod comparison;
+pub mod figures;
 pub mod ray_sets;
 mod rng;
 pub mod timing;
