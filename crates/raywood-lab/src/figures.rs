@@ -30,6 +30,8 @@ pub enum Cell {
     Number(f64, usize),
     /// A share of one, shown in percent.
     Share(f64),
+    /// A measured number, to how many decimals it is shown, and its spread as a share of it.
+    Spread(f64, usize, f64),
     /// Nothing was measured here.
     Nothing,
 }
@@ -38,6 +40,16 @@ impl Cell {
     /// Words.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
+    }
+
+    /// A number of which three digits count.
+    pub fn significant(value: f64) -> Self {
+        Self::Number(value, decimals(value))
+    }
+
+    /// A number of which three digits count, and its spread as a share of it.
+    pub fn with_spread(value: f64, spread: f64) -> Self {
+        Self::Spread(value, decimals(value), spread)
     }
 
     /// A whole number.
@@ -49,6 +61,16 @@ impl Cell {
     pub fn is_numeric(&self) -> bool {
         !matches!(self, Self::Text(_))
     }
+}
+
+/// How many decimals show three significant digits of a number.
+fn decimals(value: f64) -> usize {
+    if value == 0.0 || !value.is_finite() {
+        return 0;
+    }
+    // Of the number as it will be rounded: 9.996 is 10.0.
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    (2 - rounded.abs().log10().floor() as i32).clamp(0, 8) as usize
 }
 
 /// A chart of either kind.
@@ -157,4 +179,27 @@ pub struct BarSeries {
     pub name: String,
     /// A value for each category, `None` where nothing was measured.
     pub values: Vec<Option<f64>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_count() {
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (0.012345, "0.0123"),
+            (-0.5, "-0.500"),
+            (9.996, "10.0"),
+            (99.96, "100"),
+            (123.4, "123"),
+            (1_234_567.8, "1234568"),
+        ];
+        for (number, text) in cases {
+            let digits = decimals(number);
+            assert_eq!(format!("{number:.digits$}"), text);
+        }
+    }
 }

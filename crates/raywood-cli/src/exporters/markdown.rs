@@ -1,8 +1,9 @@
 //! Tables in Markdown, as GitHub and others read it.
 
 use super::Compared;
-use super::text_table::{notes, ray_sets, tables};
+use super::contents::{notes, ray_sets, tables};
 use crate::print::thousands;
+use crate::report::values::cell;
 
 pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
     let primitives = thousands(comparison.primitives as u64);
@@ -13,24 +14,18 @@ pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
         text += &format!("- {line}\n");
     }
     for table in tables(comparison) {
-        text += &format!("\n{}:\n\n", capitalised(table.title));
-        let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        text += &row(&table.header);
-        let columns = table.header.len();
-        text += &format!("| --- |{}\n", " ---: |".repeat(columns - 1));
-        table.rows.iter().for_each(|cells| text += &row(cells));
+        text += &format!("\n{}:\n\n| {} |\n", table.caption, table.columns.join(" | "));
+        text += &format!("| --- |{}\n", " ---: |".repeat(table.columns.len() - 1));
+        for row in &table.rows {
+            let cells: Vec<_> = row.iter().map(cell).collect();
+            text += &format!("| {} |\n", cells.join(" | "));
+        }
     }
     text += "\n";
     for note in notes(comparison) {
         text += &format!("{note}\n");
     }
     text
-}
-
-/// The text with a large first letter.
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The text with whatever would be read as Markdown escaped.

@@ -1,10 +1,10 @@
 //! How a comparison is written: one format per file. To add one, write its file and name it here.
 
+mod contents;
 mod csv;
 mod json;
 mod markdown;
 mod table;
-mod text_table;
 
 use raywood_lab::Comparison;
 

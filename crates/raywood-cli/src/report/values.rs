@@ -11,6 +11,9 @@ pub(crate) fn cell(cell: &Cell) -> String {
         Cell::Count(count) => thousands(*count),
         Cell::Number(value, decimals) => number(*value, *decimals),
         Cell::Share(share) if share.is_finite() => format!("{:.1} %", 100.0 * share),
+        Cell::Spread(value, decimals, spread) => {
+            format!("{} ±{:.0}%", number(*value, *decimals), 100.0 * spread)
+        }
         Cell::Share(_) | Cell::Nothing => "\u{2013}".to_owned(),
     }
 }
@@ -68,6 +71,7 @@ mod tests {
     fn cells() {
         let cells = [Cell::text("tree"), Cell::Count(1234), Cell::Number(2.5, 2), Cell::Share(0.5)];
         assert_eq!(cells.map(|c| cell(&c)), ["tree", "1,234", "2.50", "50.0 %"]);
+        assert_eq!(cell(&Cell::with_spread(2.5, 0.123)), "2.50 ±12%");
         assert_eq!(cell(&Cell::Nothing), "–");
     }
 }

@@ -8,48 +8,48 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 /// The command, started in a folder.
-pub fn raywood(folder: &Path) -> Command {
+pub(crate) fn raywood(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_raywood"));
     command.current_dir(folder).stdin(Stdio::null());
     command
 }
 
 /// Runs the command with arguments separated by spaces.
-pub fn run(folder: &Path, arguments: &str) -> Output {
+pub(crate) fn run(folder: &Path, arguments: &str) -> Output {
     raywood(folder).args(arguments.split_whitespace()).output().expect("the command starts")
 }
 
-pub fn code(output: &Output) -> i32 {
+pub(crate) fn code(output: &Output) -> i32 {
     output.status.code().expect("the command ends by itself")
 }
 
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text")
 }
 
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text")
 }
 
-pub fn json(output: &Output) -> Value {
+pub(crate) fn json(output: &Output) -> Value {
     assert_eq!(code(output), 0, "{}", stderr(output));
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
 /// A new, empty folder.
-pub fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).expect("a folder");
     path
 }
 
-pub fn files(folder: &Path) -> Vec<String> {
+pub(crate) fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("text")).collect()
 }
 
 /// A small model: one triangle.
-pub fn write_triangle(folder: &Path) {
+pub(crate) fn write_triangle(folder: &Path) {
     fs::write(folder.join("triangle.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a file");
 }
