@@ -22,7 +22,7 @@ impl PixelSamples {
         let pixel = mix(x ^ mix(y ^ 0x5bd1_e995));
         let seeds = [mix(pixel ^ 0x68bc_21eb), mix(pixel ^ 0x02e5_be93)];
         let half = (1 << 31) >> samples.next_power_of_two().trailing_zeros();
-        Self { samples, seeds, filled: !(2 * half - 1), half }
+        Self { samples, seeds, filled: !(half | (half - 1)), half }
     }
 
     /// Point `index` in the unit square, both coordinates at least 0 and below 1.
