@@ -5,6 +5,8 @@ use std::fmt;
 use raywood::{Ray, Vec3};
 use raywood_scene::Camera;
 
+use crate::sampling::PixelSamples;
+
 /// Why nothing can be seen through a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -93,5 +95,15 @@ impl CameraRays {
     pub fn ray(&self, x: f32, y: f32) -> Ray {
         let direction = self.corner + x * self.step_x + y * self.step_y;
         Ray::new(self.eye, direction / direction.length())
+    }
+
+    /// The primary rays of the pixel in column `x` and row `y`: [`PixelSamples`] says where they pass.
+    #[inline]
+    pub fn pixel_rays(&self, x: u32, y: u32, samples: u32) -> impl Iterator<Item = Ray> {
+        let pattern = PixelSamples::new(x, y, samples);
+        (0..samples).map(move |index| {
+            let [dx, dy] = pattern.offset(index);
+            self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
+        })
     }
 }

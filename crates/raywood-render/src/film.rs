@@ -2,6 +2,8 @@
 
 use raywood_scene::{Rgb, linear_to_srgb};
 
+use crate::rgb_image::RgbImage;
+
 /// Rows of linear light, the first row on top. 1 is the white of a picture; lights and highlights may exceed it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -63,6 +65,11 @@ impl Image {
     /// The image in sRGB, three bytes a pixel, row after row.
     pub fn to_srgb8(&self) -> Vec<u8> {
         self.pixels.iter().flat_map(|&color| srgb8(color)).collect()
+    }
+
+    /// The image as picture files hold it.
+    pub fn to_rgb_image(&self) -> RgbImage {
+        RgbImage::from_bytes(self.width, self.height, self.to_srgb8())
     }
 }
 

@@ -1,10 +1,12 @@
 //! Scenes to images: Whitted ray tracing on the `raywood` library.
 //!
-//! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`].
+//! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`]. [`heat_map`] shows what the
+//! structure does for each pixel.
 
 mod camera_rays;
 mod film;
 pub mod fresnel;
+mod heat_map;
 mod integrators;
 mod lights;
 mod options;
@@ -12,6 +14,7 @@ mod png;
 mod prepared;
 mod progress;
 mod render;
+mod rgb_image;
 mod sampling;
 mod shading;
 mod shadows;
@@ -21,12 +24,14 @@ mod view;
 
 pub use camera_rays::{CameraError, CameraRays};
 pub use film::{Image, soft_clip, srgb8};
+pub use heat_map::{HeatMap, HeatQuantity, heat_map};
 pub use integrators::{INTEGRATORS, Integrator};
 pub use options::{RenderError, RenderOptions};
 pub use png::write_png;
 pub use prepared::{PreparedScene, Surfaces};
 pub use progress::Progress;
 pub use render::render;
+pub use rgb_image::RgbImage;
 pub use sampling::PixelSamples;
 pub use shadows::shadow_ray;
 pub use stats::{RayCounts, RenderStats};

@@ -1,6 +1,11 @@
 //! The image cut into square tiles, in an order that keeps neighbours together.
 
+use rayon::prelude::*;
 use raywood_scene::Rgb;
+
+use crate::options::RenderError;
+use crate::progress::Progress;
+use crate::stats::RayCounts;
 
 /// The edge of a tile in pixels.
 pub(crate) const TILE_SIZE: u32 = 16;
@@ -18,8 +23,63 @@ pub(crate) struct Tile {
     pub(crate) height: u32,
 }
 
-/// The colours of a tile's pixels, row after row, each row [`TILE_SIZE`] long.
-pub(crate) type TilePixels = [Rgb; (TILE_SIZE * TILE_SIZE) as usize];
+/// Something for each of a tile's pixels, row after row, each row [`TILE_SIZE`] long.
+pub(crate) type TileOf<T> = [T; (TILE_SIZE * TILE_SIZE) as usize];
+
+/// The colours of a tile's pixels.
+pub(crate) type TilePixels = TileOf<Rgb>;
+
+/// Computes something for every pixel of an image, tile by tile on the threads of the current rayon pool; gives the rows from the top,
+/// and the rays that all tiles together traced. The same for any number of threads if `fill` depends on its tile alone.
+///
+/// `bytes` is what an error says about memory. `fill` should ask `progress` now and then whether to stop.
+pub(crate) fn fill_tiles<T: Copy + Send>(
+    (width, height): (u32, u32),
+    blank: T,
+    bytes: u64,
+    progress: &Progress,
+    fill: impl Fn(&Tile, &mut TileOf<T>) -> RayCounts + Sync,
+) -> Result<(Vec<T>, RayCounts), RenderError> {
+    // Give each tile its own pixels, so that threads share nothing while they work.
+    let out_of_memory = |_| RenderError::OutOfMemory { bytes };
+    let tiles = tiles_in_morton_order(width, height);
+    let mut work: Vec<(Tile, TileOf<T>)> = Vec::new();
+    work.try_reserve_exact(tiles.len()).map_err(out_of_memory)?;
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(width as usize * height as usize).map_err(out_of_memory)?;
+    work.extend(tiles.into_iter().map(|tile| (tile, [blank; _])));
+
+    // One tile is the unit that idle threads steal.
+    progress.start(u64::from(width) * u64::from(height));
+    let rays = work
+        .par_iter_mut()
+        .with_max_len(1)
+        .map(|(tile, pixels)| {
+            if progress.is_cancelled() {
+                return RayCounts::default();
+            }
+            let rays = fill(tile, pixels);
+            progress.add(u64::from(tile.width * tile.height));
+            rays
+        })
+        .sum();
+    if progress.is_cancelled() {
+        return Err(RenderError::Cancelled);
+    }
+
+    // Put the tiles together.
+    pixels.resize(width as usize * height as usize, blank);
+    for (tile, part) in &work {
+        for (row, part) in
+            part.chunks_exact(TILE_SIZE as usize).enumerate().take(tile.height as usize)
+        {
+            let start = (tile.y as usize + row) * width as usize + tile.x as usize;
+            let columns = tile.width as usize;
+            pixels[start..start + columns].copy_from_slice(&part[..columns]);
+        }
+    }
+    Ok((pixels, rays))
+}
 
 /// All tiles of an image along Morton's curve (1966): tiles that are near in time are near in the picture, so the
 /// threads share what lies in the caches.

@@ -12,7 +12,6 @@ use crate::camera_rays::CameraRays;
 use crate::lights::Lights;
 use crate::options::RenderOptions;
 use crate::progress::Progress;
-use crate::sampling::PixelSamples;
 use crate::stats::RayCounts;
 use crate::tiles::{TILE_SIZE, Tile, TilePixels};
 
@@ -77,14 +76,12 @@ fn sample_pixels(
     let weight = 1.0 / samples as f32;
     for (row, y) in (tile.y..tile.y + tile.height).enumerate() {
         for (column, x) in (tile.x..tile.x + tile.width).enumerate() {
-            let pattern = PixelSamples::new(x, y, samples);
             let mut sum = Rgb::ZERO;
-            for index in 0..samples {
+            for ray in frame.camera.pixel_rays(x, y, samples) {
                 if frame.progress.is_cancelled() {
                     return;
                 }
-                let [dx, dy] = pattern.offset(index);
-                sum += radiance(&frame.camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy));
+                sum += radiance(&ray);
             }
             pixels[row * TILE_SIZE as usize + column] = weight * sum;
         }
