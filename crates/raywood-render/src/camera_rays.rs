@@ -5,6 +5,7 @@ use std::fmt;
 use raywood::{Ray, Vec3};
 use raywood_scene::Camera;
 
+use crate::bounds_overlay::Projection;
 use crate::sampling::PixelSamples;
 
 /// Why nothing can be seen through a camera.
@@ -105,5 +106,10 @@ impl CameraRays {
             let [dx, dy] = pattern.offset(index);
             self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
         })
+    }
+
+    /// Where points appear in the picture: the inverse of [`ray`](Self::ray).
+    pub(crate) fn projection(&self) -> Projection {
+        Projection::new(self.eye, [self.step_x, self.step_y, self.corner])
     }
 }

@@ -1,8 +1,9 @@
 //! Scenes to images: Whitted ray tracing on the `raywood` library.
 //!
 //! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`]. [`heat_map`] shows what the
-//! structure does for each pixel.
+//! structure does for each pixel, [`bounds_overlay`] its boxes.
 
+mod bounds_overlay;
 mod camera_rays;
 mod film;
 pub mod fresnel;
@@ -22,6 +23,7 @@ mod stats;
 mod tiles;
 mod view;
 
+pub use bounds_overlay::{BoundsOverlay, bounds_overlay};
 pub use camera_rays::{CameraError, CameraRays};
 pub use film::{Image, soft_clip, srgb8};
 pub use heat_map::{HeatMap, HeatQuantity, heat_map};

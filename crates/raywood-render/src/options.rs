@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use raywood::StructureKind;
+
 use crate::camera_rays::CameraError;
 use crate::integrators::{INTEGRATORS, Integrator};
 use crate::tiles::TILE_SIZE;
@@ -126,6 +128,15 @@ pub enum RenderError {
         /// The cut-off asked for.
         cutoff: f32,
     },
+    /// The structure has no such level to show.
+    NoSuchLevel {
+        /// The kind of structure.
+        structure: StructureKind,
+        /// The level asked for; the root's is 0.
+        level: usize,
+        /// How many levels there are.
+        levels: usize,
+    },
     /// Nothing can be seen through the camera.
     Camera(CameraError),
 }
@@ -164,6 +175,16 @@ impl fmt::Display for RenderError {
             Self::Cutoff { cutoff } => {
                 let smallest = RenderOptions::SMALLEST_CUTOFF;
                 write!(f, "a cut-off of {cutoff}: must be from {smallest} to 1")
+            }
+            Self::NoSuchLevel { structure, level, levels } => {
+                let name = structure.name();
+                match levels.checked_sub(1) {
+                    None => write!(f, "there is no level {level}: the {name} is empty"),
+                    Some(0) => write!(f, "there is no level {level}: the {name} has level 0 only"),
+                    Some(deepest) => {
+                        write!(f, "there is no level {level}: the {name} has levels 0 to {deepest}")
+                    }
+                }
             }
             Self::Camera(error) => error.fmt(f),
         }
