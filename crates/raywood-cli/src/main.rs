@@ -6,6 +6,7 @@ mod failure;
 mod interrupt;
 mod output_file;
 mod parse;
+mod picture;
 mod print;
 mod progress_bar;
 #[allow(dead_code)]

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use raywood::{StructureKind, Vec3};
+use raywood_render::HeatQuantity;
 
 /// A point or direction, `X,Y,Z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +79,22 @@ pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
     })
 }
 
+/// The name of what a heat map shows.
+pub(crate) fn heat_quantity(text: &str) -> Result<HeatQuantity, String> {
+    HeatQuantity::from_name(text).ok_or_else(|| {
+        let names: Vec<_> = HeatQuantity::ALL.iter().map(|quantity| quantity.name()).collect();
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+/// A finite number above zero.
+pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
 /// A vertical field of view in degrees, between 0 and 180.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
@@ -107,5 +124,10 @@ mod tests {
         assert!("1,2,3,-1".parse::<PointLight>().is_err());
         assert_eq!(field_of_view("35"), Ok(35.0));
         assert!(["0", "180", "nan", "-5", "wide"].iter().all(|bad| field_of_view(bad).is_err()));
+        assert_eq!(above_zero("0.5"), Ok(0.5));
+        assert!(["0", "-1", "nan", "inf", "1e99", ""].iter().all(|bad| above_zero(bad).is_err()));
+        assert_eq!(heat_quantity("tests"), Ok(HeatQuantity::Tests));
+        let said = heat_quantity("time").expect_err("no such quantity");
+        assert_eq!(said, "expected one of nodes, boxes, primitives, tests");
     }
 }

@@ -4,9 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use raywood::{StructureKind, StructureStats};
-use raywood_render::{
-    PreparedScene, Progress, RenderError, RenderOptions, RenderStats, View, render, write_png,
-};
+use raywood_render::{HeatQuantity, PreparedScene, RenderOptions, RenderStats};
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
@@ -14,9 +12,10 @@ use super::thread_pool;
 use crate::exporters;
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::{Size, structure_kind};
+use crate::parse::{Size, above_zero, heat_quantity, structure_kind};
+use crate::picture::{self, Bounds, Heat, Request};
 use crate::print::{self, thousands};
-use crate::progress_bar::{during_rendering, during_step};
+use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
 use crate::view_args::ViewArgs;
 
@@ -63,7 +62,7 @@ pub(crate) struct Args {
     /// Transparent things cast black shadows
     ///
     /// Otherwise light passes straight through them to what lies behind, weakened and coloured by what they absorb.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     opaque_shadows: bool,
 
     /// Acceleration structure to trace with
@@ -72,10 +71,28 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME", value_parser = structure_kind)]
     structure: Option<StructureKind>,
 
+    /// Show the structure's work for each pixel
+    ///
+    /// Instead of the scene: `nodes` (nodes or cells entered), `boxes` (box tests), `primitives` (primitive tests) or `tests` (both), the mean over the pixel's rays from the eye. A strip with a legend is added below the picture.
+    #[arg(long, value_name = "QUANTITY", value_parser = heat_quantity)]
+    heatmap: Option<HeatQuantity>,
+
+    /// Where the scale of the heat map ends
+    ///
+    /// To compare several maps. Else it ends where 99.5% of the pixels lie below, rounded up; the legend then has `>=` before its last number if some lie above.
+    #[arg(long, value_name = "N", value_parser = above_zero, requires = "heatmap", hide_short_help = true)]
+    heatmap_max: Option<f32>,
+
+    /// Draw the structure's boxes of a level
+    ///
+    /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
+    #[arg(long, value_name = "LEVEL")]
+    show_bounds: Option<usize>,
+
     /// Refuse what is otherwise mended
     ///
     /// Such as vertices that are not a number, which are otherwise dropped with the triangles that use them.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     strict: bool,
 
     /// Print the statistics as JSON
@@ -93,6 +110,8 @@ struct Report<'a> {
     build: Duration,
     view: Duration,
     render: RenderStats,
+    heat: Option<Heat>,
+    bounds: Option<Bounds>,
     write: Duration,
 }
 
@@ -125,19 +144,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let started = Instant::now();
     let aspect = args.size.width as f32 / args.size.height as f32;
     let choose = || args.view.view(&prepared, aspect);
-    let View { camera, lights } = during_step("choosing a view", || pool.install(choose))?;
+    let view = &during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
-    let progress = Progress::new();
-    let (image, stats) = during_rendering(&progress, || {
-        pool.install(|| render(&prepared, &camera, &lights, &options, &progress))
-    })
-    .map_err(|error| match error {
-        RenderError::OutOfMemory { .. } => Failure::while_running(error),
-        error => Failure::bad_input(error),
-    })?;
+    let request = Request {
+        prepared: &prepared,
+        view,
+        options: &options,
+        heatmap: args.heatmap,
+        heatmap_max: args.heatmap_max,
+        show_bounds: args.show_bounds,
+    };
+    let drawn = picture::draw(&request, &pool)?;
 
     let started = Instant::now();
-    output.write(|writer| write_png(&image, writer))?;
+    output.write(|writer| drawn.write(writer))?;
     let write = started.elapsed();
 
     let structure = prepared.structure().stats();
@@ -149,7 +169,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         load,
         build,
         view: chosen,
-        render: stats,
+        render: drawn.render,
+        heat: drawn.heat,
+        bounds: drawn.bounds,
         write,
     };
     if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
@@ -168,7 +190,8 @@ fn output_file(args: &Args) -> Result<OutputFile, Failure> {
 
 impl Report<'_> {
     fn as_text(&self) -> String {
-        let Self { args, scene, kind, structure, load, build, view, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, view, render, heat, bounds, write } =
+            self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
         let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
@@ -196,6 +219,10 @@ impl Report<'_> {
                 render.threads
             ),
         );
+        if let Some(Bounds { level, boxes, time }) = bounds {
+            let boxes = thousands(*boxes as u64);
+            line("bounds", format!("{}   {boxes} boxes of level {level}", seconds(time)));
+        }
         line("write", seconds(write));
         line(
             "rays",
@@ -203,6 +230,15 @@ impl Report<'_> {
                 "{primary} primary, {shadow} shadow, {reflection} reflection, {refraction} refraction"
             ),
         );
+        if let Some(Heat { quantity, mean, max, scale, pixels_above }) = heat {
+            let above = match pixels_above {
+                0 => String::new(),
+                above => format!(", {} pixels above", thousands(*above as u64)),
+            };
+            let label = quantity.label();
+            let values = format!("mean {mean:.1}, maximum {max}, scale 0 to {scale}{above}");
+            line("heat", format!("{label}: {values}"));
+        }
         text
     }
 
@@ -213,7 +249,8 @@ impl Report<'_> {
     }
 
     fn as_json(&self) -> Value {
-        let Self { args, scene, kind, structure, load, build, view, render, write } = self;
+        let Self { args, scene, kind, structure, load, build, view, render, heat, bounds, write } =
+            self;
         let rays = render.rays;
         json!({
             "scene": args.scene,
@@ -241,6 +278,16 @@ impl Report<'_> {
                 "total": rays.total(),
             },
             "million_rays_per_second": render.million_rays_per_second(),
+            "heatmap": heat.as_ref().map(|heat| json!({
+                "quantity": heat.quantity.name(),
+                "mean": heat.mean,
+                "max": heat.max,
+                "scale": heat.scale,
+                "pixels_above_scale": heat.pixels_above,
+            })),
+            "bounds": bounds.as_ref().map(|bounds| json!({
+                "level": bounds.level, "boxes": bounds.boxes, "seconds": bounds.time.as_secs_f64(),
+            })),
             "structure": exporters::structure(*kind, structure),
         })
     }
