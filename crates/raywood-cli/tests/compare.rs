@@ -3,6 +3,7 @@
 mod support;
 
 use raywood::StructureKind;
+use raywood_testkit::html::{check_well_formed, is_self_contained};
 use serde_json::Value;
 use support::{code, folder, json, run, stderr, stdout, write_triangle};
 
@@ -73,6 +74,21 @@ fn chosen_structures_are_compared_in_the_order_given() {
 }
 
 #[test]
+fn the_page_is_whole_and_needs_nothing_else() {
+    let folder = folder("compare-page");
+    let output = run(&folder, &format!("{SMALL} --html page.html --format csv"));
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let page = std::fs::read_to_string(folder.join("page.html")).expect("a page");
+    assert_eq!(check_well_formed(&page), Ok(()));
+    assert!(is_self_contained(&page));
+    let maps = page.matches("data:image/png;base64,").count();
+    assert_eq!(maps, 2 * StructureKind::ALL.len(), "a small scene has a map of every structure");
+    for kind in StructureKind::ALL {
+        assert!(page.contains(kind.name()), "{} is missing", kind.name());
+    }
+}
+
+#[test]
 fn bad_requests_are_one_line_and_exit_code_2() {
     let folder = folder("compare-bad");
     for (arguments, expected) in [
@@ -80,6 +96,7 @@ fn bad_requests_are_one_line_and_exit_code_2() {
         ("compare --structures kd-tree,bush", "uniform-grid"),
         ("compare --rays 0", "1.."),
         ("compare --rounds 0", "1.."),
+        ("compare --html nowhere/page.html", "nowhere"),
         ("compare --format xml", "markdown"),
         ("compare builtin:whitted --camera 9", "no camera `9`"),
         ("compare builtin:whitted --eye 0,0,0 --target 0,0,0", "same point"),

@@ -8,6 +8,6 @@ mod rng;
 pub mod timing;
 
 pub use comparison::{Answer, CompareError, CompareOptions, Comparison, Mismatch};
-pub use comparison::{RaySetSummary, StructureReport, Traces, compare};
+pub use comparison::{RaySetSummary, SceneStructure, StructureReport, Traces, compare};
 pub use ray_sets::{RayKind, RaySet};
 pub use timing::Timing;

@@ -15,10 +15,11 @@ fn every_structure_is_compared_with_every_kind_of_rays() {
     let scene = builtin("sphereflake?depth=2").expect("a scene");
     let prepared = PreparedScene::new(&scene).expect("it builds");
     let view = default_view(&prepared, 1.6);
-    let comparison = compare(&prepared, &view, &small(), |_| {}).expect("they agree");
+    let (comparison, structures) = compare(&prepared, &view, &small(), |_| {}).expect("they agree");
 
     let kinds: Vec<_> = comparison.structures.iter().map(|structure| structure.kind).collect();
     assert_eq!(kinds, StructureKind::ALL);
+    assert!(structures.iter().map(|structure| structure.kind()).eq(kinds));
     assert_eq!(comparison.ray_sets.len(), RayKind::ALL.len());
     for structure in &comparison.structures {
         assert_eq!(structure.stats.primitives, comparison.primitives);
@@ -71,7 +72,7 @@ fn nothing_to_see_is_no_trouble() {
     let scene = Scene::default();
     let prepared = PreparedScene::new(&scene).expect("it builds");
     let view = default_view(&prepared, 1.6);
-    let comparison = compare(&prepared, &view, &small(), |_| {}).expect("they agree");
+    let (comparison, _) = compare(&prepared, &view, &small(), |_| {}).expect("they agree");
     assert_eq!(comparison.primitives, 0);
     assert!(comparison.ray_sets.iter().all(|set| set.hits == 0));
 }

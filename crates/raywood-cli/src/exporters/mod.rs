@@ -2,6 +2,7 @@
 
 mod contents;
 mod csv;
+pub(crate) mod html;
 mod json;
 mod markdown;
 mod table;

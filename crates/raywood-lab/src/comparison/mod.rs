@@ -7,7 +7,7 @@ use raywood::{Counts, StructureKind, StructureStats};
 
 use crate::{RayKind, Timing};
 pub use disagreement::{Answer, CompareError, Mismatch};
-pub use run::compare;
+pub use run::{SceneStructure, compare};
 
 /// What is compared, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]

@@ -27,7 +27,7 @@ const PILOT_ROUNDS: usize = 4;
 /// Times are medians of rounds in which all structures take turns. Every hit of every structure is held against those of the structure in
 /// `reference`, whose own are held against brute force if that is among the structures: all are equal, to the bit, or the comparison is an
 /// error. Brute force, and any other structure that would take too long, traces a sample of the rays. All structures are in
-/// memory at once. `step` is told what is being done.
+/// memory at once, and are handed over in the end. `step` is told what is being done.
 ///
 /// # Errors
 ///
@@ -37,7 +37,7 @@ pub fn compare<'a>(
     view: &View,
     options: &CompareOptions,
     mut step: impl FnMut(&str),
-) -> Result<Comparison, CompareError> {
+) -> Result<(Comparison, Vec<SceneStructure<'a>>), CompareError> {
     step("choosing rays");
     let sets = ray_sets(reference, view, options.aspect, options.rays);
     let sets = sets.map_err(CompareError::Camera)?;
@@ -84,16 +84,17 @@ pub fn compare<'a>(
         rays: set.rays.len(),
         hits: expected.iter().filter(|answer| answer.hits()).count(),
     });
-    Ok(Comparison {
+    let comparison = Comparison {
         primitives: surfaces.len(),
         threads: rayon::current_num_threads(),
         ray_sets: ray_sets.collect(),
         structures: reports,
-    })
+    };
+    Ok((comparison, structures))
 }
 
 /// A structure over a scene.
-type SceneStructure<'a> = Structure<Surfaces<'a>>;
+pub type SceneStructure<'a> = Structure<Surfaces<'a>>;
 
 /// Builds all structures, by turns and several times.
 fn build<'a>(
