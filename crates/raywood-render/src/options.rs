@@ -57,7 +57,8 @@ impl RenderOptions {
     pub fn memory_bytes(&self) -> u64 {
         let in_tiles = |size: u32| u64::from(size.div_ceil(TILE_SIZE)) * u64::from(TILE_SIZE);
         let image = u64::from(self.width) * u64::from(self.height);
-        12 * (image + in_tiles(self.width).saturating_mul(in_tiles(self.height)))
+        let tiles = in_tiles(self.width).saturating_mul(in_tiles(self.height));
+        image.saturating_add(tiles).saturating_mul(12)
     }
 
     /// Whether the options make sense.
