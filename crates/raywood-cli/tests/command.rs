@@ -80,6 +80,55 @@ fn the_picture_does_not_depend_on_the_structure() {
 }
 
 #[test]
+fn a_heat_map_is_drawn_above_a_legend_and_reported() {
+    let folder = folder("heatmap");
+    write_triangle(&folder);
+    let arguments = "render triangle.obj --size 96x60 -n 2 --structure brute-force";
+    let report = json(&run(&folder, &format!("{arguments} --heatmap primitives --json")));
+    // One triangle, which every ray tests.
+    assert_eq!(report["heatmap"]["quantity"], "primitives");
+    for (key, expected) in [("mean", 1.0), ("max", 1.0), ("scale", 1.0)] {
+        assert_eq!(report["heatmap"][key], expected, "{key}");
+    }
+    assert_eq!(report["rays"]["primary"], 96 * 60 * 2);
+    assert_eq!(report["bounds"], Value::Null);
+    let picture = Picture::read(&folder.join("render.png")).expect("a PNG");
+    assert!(picture.width >= 96 && picture.height > 60, "{} rows", picture.height);
+
+    let output = run(&folder, &format!("{arguments} --heatmap primitives --heatmap-max 0.5"));
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let text = stdout(&output);
+    let expected = "primitive tests per ray: mean 1.0, maximum 1, scale 0 to 0.5, 5,760 pixels";
+    assert!(text.contains(expected), "{text}");
+
+    let without = json(&run(&folder, &format!("{arguments} --json")));
+    assert_eq!(without["heatmap"], Value::Null);
+}
+
+#[test]
+fn bounds_are_drawn_over_pictures_and_heat_maps_of_every_structure() {
+    let folder = folder("bounds");
+    let picture = |options: &str| {
+        let arguments = "render builtin:sphereflake?depth=2 --size 96x60 -n 1 --json";
+        let report = json(&run(&folder, &format!("{arguments} {options}")));
+        (Picture::read(&folder.join("render.png")).expect("a PNG"), report)
+    };
+    let (plain, _) = picture("");
+    for structure in ["uniform-grid", "octree", "kd-tree", "bvh-median"] {
+        let (with, report) = picture(&format!("--structure {structure} --show-bounds 1"));
+        assert_eq!(report["bounds"]["level"], 1);
+        assert!(report["bounds"]["boxes"].as_u64() > Some(1), "{structure}");
+        assert_eq!((with.width, with.height), (plain.width, plain.height));
+        assert_ne!(with, plain, "{structure}");
+    }
+    let (heat, _) = picture("--heatmap nodes");
+    let (both, report) = picture("--heatmap nodes --show-bounds 2");
+    assert_eq!((both.width, both.height), (heat.width, heat.height));
+    assert_ne!(both, heat);
+    assert!(!report["heatmap"].is_null() && !report["bounds"].is_null());
+}
+
+#[test]
 fn info_tells_what_a_scene_holds() {
     let folder = folder("info");
     write_triangle(&folder);
@@ -122,6 +171,10 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         ("render triangle.obj --depth 1000", "depth"),
         ("render triangle.obj --eye 0,0,0 --target 0,0,0", "eye"),
         ("render triangle.obj --camera 3", "none"),
+        (
+            "render triangle.obj --show-bounds 7",
+            "there is no level 7: the bvh-sah-binned has level",
+        ),
         ("info missing.glb", "missing.glb: no such file"),
     ] {
         let output = run(&folder, arguments);
@@ -139,12 +192,19 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         "render --size big triangle.obj",
         "render --eye 1,2 triangle.obj",
         "render --threads 0",
+        "render --heatmap time",
+        "render --heatmap-max 5",
+        "render --heatmap nodes --heatmap-max 0",
+        "render --heatmap nodes --heatmap-max nan",
+        "render --show-bounds -1",
     ] {
         let output = run(&folder, arguments);
         let said = stderr(&output);
         assert_eq!(code(&output), 2, "{arguments}: {said}");
         assert!(said.contains("Usage: raywood") || said.contains("--help"), "{arguments}: {said}");
     }
+    let unknown = stderr(&run(&folder, "render --heatmap time"));
+    assert!(unknown.contains("expected one of nodes, boxes, primitives, tests"), "{unknown}");
     let left = files(&folder);
     assert!(!left.iter().any(|name| name.ends_with(".tmp")), "{left:?}");
 }

@@ -28,8 +28,7 @@ const BAND: usize = 32;
 /// The coverage of a line and of the seam around it, in 255ths.
 type Coverage = [u8; 2];
 
-/// Lines over a picture.
-#[derive(Clone, Debug)]
+/// Lines that are being drawn.
 pub(super) struct Lines {
     width: usize,
     height: usize,
@@ -44,10 +43,11 @@ pub(super) struct Lines {
     waiting: Vec<(Segment, f32)>,
 }
 
-impl PartialEq for Lines {
-    fn eq(&self, other: &Self) -> bool {
-        self.width == other.width && self.coverage == other.coverage
-    }
+/// How much of each pixel lines cover.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Covered {
+    width: usize,
+    coverage: Vec<Coverage>,
 }
 
 /// The edges of a box between its corners, whose numbers have a bit for each axis: set at the maximum.
@@ -104,12 +104,17 @@ impl Lines {
         let strength = (appears / SMALL).clamp(FAINTEST, 1.0);
         self.waiting.extend(edges.into_iter().flatten().map(|edge| (edge, strength)));
         if self.waiting.len() >= BATCH {
-            self.finish();
+            self.draw_waiting();
         }
     }
 
-    /// Draws what waits.
-    pub(super) fn finish(&mut self) {
+    /// Draws the last of the lines.
+    pub(super) fn finish(mut self) -> Covered {
+        self.draw_waiting();
+        Covered { width: self.width, coverage: self.coverage }
+    }
+
+    fn draw_waiting(&mut self) {
         let Self { width, coverage, depths, waiting, radius, seam_radius, .. } = self;
         let pen = Pen { radius: *radius, seam_radius: *seam_radius };
         let bands = coverage.par_chunks_mut(BAND * *width).zip(depths.par_chunks(BAND * *width));
@@ -122,9 +127,11 @@ impl Lines {
         });
         waiting.clear();
     }
+}
 
+impl Covered {
     /// The pixels that lines or their seams cover: column, row, and both shares, 0 to 1.
-    pub(super) fn covered(&self) -> impl Iterator<Item = (u32, u32, f32, f32)> {
+    pub(super) fn pixels(&self) -> impl Iterator<Item = (u32, u32, f32, f32)> {
         let covered = self.coverage.iter().enumerate().filter(|(_, [_, seam])| *seam > 0);
         covered.map(|(index, coverage)| {
             let (x, y) = (index % self.width, index / self.width);

@@ -1,7 +1,7 @@
 //! Overlays of bounds: the boxes or cells of a level of the structure, as lines over a picture.
 //!
 //! Shown are the nodes of the level and the leaves above it, so that together they hold everything in the scene; leaves without
-//! primitives are left out. Lines behind surfaces are fainter.
+//! primitives are left out. Lines behind surfaces are fainter, and so are boxes of a few pixels, which else would cover the picture.
 
 mod depth;
 mod lines;
@@ -16,14 +16,14 @@ use crate::options::{RenderError, RenderOptions};
 use crate::prepared::Surfaces;
 use crate::progress::Progress;
 use crate::rgb_image::RgbImage;
-use lines::Lines;
+use lines::{Covered, Lines};
 
 pub(crate) use projection::Projection;
 
 /// Lines over a picture of the same size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundsOverlay {
-    lines: Lines,
+    lines: Covered,
     /// How many boxes or cells are shown; some may lie outside the picture.
     boxes: usize,
 }
@@ -62,8 +62,7 @@ pub fn bounds_overlay(
     if progress.is_cancelled() {
         return Err(RenderError::Cancelled);
     }
-    lines.finish();
-    Ok(BoundsOverlay { lines, boxes })
+    Ok(BoundsOverlay { lines: lines.finish(), boxes })
 }
 
 /// Whether the structure has a level.
@@ -100,7 +99,7 @@ impl BoundsOverlay {
         // A hue that neither the heat map nor many scenes have, on a dark seam: to be seen on white as on black.
         const LINE: Rgb = Rgb::new(1.0, 0.06, 0.25);
         const SEAM: Rgb = Rgb::ZERO;
-        for (x, y, line, seam) in self.lines.covered() {
+        for (x, y, line, seam) in self.lines.pixels() {
             picture.blend(x, y, SEAM, 0.5 * seam);
             picture.blend(x, y, LINE, line);
         }

@@ -46,7 +46,9 @@ pub(super) fn ticks(maximum: f32, intervals: usize) -> Vec<f32> {
     let power = 10f64.powf((maximum / intervals.max(1) as f64).log10().floor());
     // A hair of tolerance: 1.5 / 0.3 may be more than 5.
     let fits = |step: &f64| maximum / step <= intervals as f64 + 1e-6;
-    let steps = STEPS.map(|step| step * power).into_iter();
+    // Counts are whole: beside 2.5 a reader would look for halves.
+    let even = |step: &f64| *step < 1.0 || step.fract() == 0.0;
+    let steps = STEPS.map(|step| step * power).into_iter().filter(even);
     let step = steps.chain([10.0 * power]).find(fits).unwrap_or(maximum);
     let multiples = (1..intervals).map(|k| k as f64 * step);
     // What comes close to the end would stand in its number.
@@ -120,6 +122,8 @@ mod tests {
         assert_eq!(ticks(80.0, 5), [0.0, 20.0, 40.0, 60.0, 80.0]);
         assert_eq!(ticks(47.0, 5), [0.0, 10.0, 20.0, 30.0, 40.0, 47.0]);
         assert_eq!(ticks(42.0, 5), [0.0, 10.0, 20.0, 30.0, 42.0]);
+        assert_eq!(ticks(15.0, 6), [0.0, 5.0, 10.0, 15.0]);
+        assert_eq!(ticks(150.0, 6), [0.0, 25.0, 50.0, 75.0, 100.0, 125.0, 150.0]);
         assert_eq!(ticks(7.0, 1), [0.0, 7.0]);
         for intervals in 1..9 {
             for maximum in [1e-30, 0.3, 1.0, 1.7, 12.0, 99.9, 12_345.0, 1e30, -1.0, f32::NAN] {
