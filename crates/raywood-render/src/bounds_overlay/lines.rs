@@ -16,7 +16,7 @@ const HIDDEN: f32 = 0.16;
 
 /// Boxes that appear smaller than this many lines side by side are fainter, down to a least strength: else a fine level would hide
 /// the picture under one colour.
-const SMALL: f32 = 16.0;
+const SMALL: f32 = 12.0;
 const FAINTEST: f32 = 0.12;
 
 /// Segments that wait to be drawn, together, by all threads.
@@ -79,9 +79,9 @@ impl Lines {
             .try_reserve_exact(width * height)
             .map_err(|_| RenderError::OutOfMemory { bytes: options.memory_bytes() })?;
         coverage.resize(width * height, [0; 2]);
-        // As thick as looks the same in pictures of all sizes, but never less than a pixel.
-        let radius = (width.min(height) as f32 / 1400.0).clamp(0.5, 4.0);
-        let seam_radius = 2.0 * radius + 0.5;
+        // As thick as looks the same in pictures of all sizes, but never so thin that between two pixels it pales.
+        let radius = (width.min(height) as f32 / 1000.0).clamp(0.7, 4.0);
+        let seam_radius = 1.5 * radius + 0.6;
         let waiting = Vec::new();
         Ok(Self { width, height, coverage, depths, projection, radius, seam_radius, waiting })
     }

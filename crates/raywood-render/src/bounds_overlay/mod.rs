@@ -100,7 +100,7 @@ impl BoundsOverlay {
         const LINE: Rgb = Rgb::new(1.0, 0.06, 0.25);
         const SEAM: Rgb = Rgb::ZERO;
         for (x, y, line, seam) in self.lines.pixels() {
-            picture.blend(x, y, SEAM, 0.5 * seam);
+            picture.blend(x, y, SEAM, 0.4 * seam);
             picture.blend(x, y, LINE, line);
         }
     }
