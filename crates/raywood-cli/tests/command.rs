@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use raywood_testkit::image::Picture;
+use serde_json::Value;
 use support::{code, files, folder, json, raywood, run, stderr, stdout, write_triangle};
 
 #[test]
