@@ -51,6 +51,24 @@ pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     fold_piece(items)
 }
 
+/// Has `f` write the outputs beside a piece of the inputs, piece by piece. Both slices have the same length.
+pub(crate) fn fill_pieces<I: Sync, O: Send>(
+    inputs: &[I],
+    outputs: &mut [O],
+    f: impl Fn(&[I], &mut [O]) + Sync,
+) {
+    debug_assert_eq!(inputs.len(), outputs.len());
+    #[cfg(feature = "rayon")]
+    {
+        // Pieces large enough that filling pipelines at their beginning costs little, small enough that all threads have some.
+        let threads = rayon::current_num_threads();
+        let piece = inputs.len().div_ceil(4 * threads).clamp(16, 4096);
+        inputs.par_chunks(piece).zip(outputs.par_chunks_mut(piece)).for_each(|(i, o)| f(i, o));
+    }
+    #[cfg(not(feature = "rayon"))]
+    f(inputs, outputs);
+}
+
 /// Writes `f` of each input to the output beside it. Both slices have the same length.
 pub(crate) fn fill<I: Sync, O: Send>(inputs: &[I], outputs: &mut [O], f: impl Fn(&I) -> O + Sync) {
     debug_assert_eq!(inputs.len(), outputs.len());

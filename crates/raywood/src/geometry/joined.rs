@@ -1,7 +1,7 @@
 //! Two kinds of geometry as one.
 
 use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
-use crate::{Aabb, Hit, Ray};
+use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Two geometries under one numbering: first all primitives of `first`, then all of `second`.
 ///
@@ -40,6 +40,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         match self.in_second(primitive) {
             None => self.first.clipped_bounds(primitive, cell),
             Some(primitive) => self.second.clipped_bounds(primitive, cell),
+        }
+    }
+
+    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        match self.in_second(primitive) {
+            None => self.first.triangle(primitive),
+            Some(primitive) => self.second.triangle(primitive),
         }
     }
 

@@ -5,6 +5,7 @@ mod joined;
 mod prepared_ray;
 mod spheres;
 mod surface;
+mod triangle_block;
 mod triangle_mesh;
 mod watertight;
 
@@ -12,9 +13,10 @@ pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
 pub use spheres::{Spheres, SpheresError};
 pub use surface::SurfacePoint;
+pub(crate) use triangle_block::{LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
 
-use crate::{Aabb, Hit, Ray};
+use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Where a ray meets one primitive: the part of a [`Hit`] that the primitive itself can tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +54,13 @@ pub trait Geometry: Sync {
         self.bounds(primitive).intersection(cell)
     }
 
+    /// The corners of the primitive if it is a triangle whose hits are those of a [`TriangleMesh`], so that fast structures can keep it in a form
+    /// of their own and test several at once. The default says that it is none.
+    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        let _ = primitive;
+        None
+    }
+
     /// The nearest hit of the ray with this primitive at `ray.t_min <= t < ray.t_max`, if any.
     ///
     /// `t` must be a number and inside the interval; a caller may rely on it.
@@ -74,6 +83,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
 
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
         (**self).clipped_bounds(primitive, cell)
+    }
+
+    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        (**self).triangle(primitive)
     }
 
     #[inline(always)]

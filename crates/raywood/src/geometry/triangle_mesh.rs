@@ -143,6 +143,10 @@ impl Geometry for TriangleMesh {
         clipped_triangle_bounds(self.corners(primitive), cell)
     }
 
+    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        Some(self.corners(primitive))
+    }
+
     #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         let [p0, p1, p2] = self.corners(primitive);

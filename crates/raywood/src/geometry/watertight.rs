@@ -9,16 +9,18 @@ use crate::Vec3;
 use crate::minmax::{larger, smaller};
 
 /// Outside of this range of determinants single precision may have lost digits to underflow or come too near to overflow.
-const TRUSTED_DETERMINANTS: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
+pub(super) const LEAST_DETERMINANT: f32 = 1e-30;
+/// See [`LEAST_DETERMINANT`].
+pub(super) const GREATEST_DETERMINANT: f32 = 1e30;
 
 /// An edge function's rounding error is at most this times the triangle's reach across the ray times its reach in all.
-const EDGE_ERROR: f32 = 8.0 * f32::EPSILON;
+pub(super) const EDGE_ERROR: f32 = 8.0 * f32::EPSILON;
 
 /// The depth's rounding error is at most this times the reach along the ray, in a triangle of sound shape.
-const DEPTH_ERROR: f32 = 4.0 * f32::EPSILON;
+pub(super) const DEPTH_ERROR: f32 = 4.0 * f32::EPSILON;
 
 /// A distance that single precision may have wrong by more than this share of itself is computed again in double.
-const DISTANCE_TOLERANCE: f32 = 1.0 / 8192.0;
+pub(super) const DISTANCE_TOLERANCE: f32 = 1.0 / 8192.0;
 
 /// The hit of a ray with the triangle `p0 p1 p2`, from either side, edges and vertices included.
 #[inline(always)]
@@ -49,7 +51,7 @@ pub(super) fn intersect_triangle(
     }
     let determinant = e0 + e1 + e2;
     let certain = least > edge_error || greatest < -edge_error;
-    if !(certain && TRUSTED_DETERMINANTS.contains(&determinant.abs())) {
+    if !(certain && (LEAST_DETERMINANT..=GREATEST_DETERMINANT).contains(&determinant.abs())) {
         return intersect_in_double(ray, [p0, p1, p2]);
     }
     let reciprocal = 1.0 / determinant;

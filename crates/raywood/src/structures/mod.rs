@@ -7,6 +7,7 @@ mod kd_tree;
 pub(crate) mod octree;
 mod registry;
 mod structure;
+mod wide;
 
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};
@@ -15,6 +16,7 @@ pub use kd_tree::{KdNode, KdTree};
 pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;
+pub use wide::WideBvh;
 
 use crate::{Geometry, Hit, NodeView, Probe, Ray, StructureStats, ValidationError};
 
@@ -37,6 +39,20 @@ pub trait AccelerationStructure: Send + Sync {
 
     /// Whether the ray hits anything at `t_min <= t < t_max`. The probe is told what is tested.
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool;
+
+    /// [`intersect`](Self::intersect) for many rays, on this thread. Both slices have the same length.
+    fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.intersect(geometry, ray, &mut ());
+        }
+    }
+
+    /// [`occluded`](Self::occluded) for many rays, on this thread. Both slices have the same length.
+    fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = self.occluded(geometry, ray, &mut ());
+        }
+    }
 
     /// Shows every node or cell, parents before their children: the source of statistics and of pictures of the structure.
     /// O(size of the structure).

@@ -1,6 +1,8 @@
 //! The registry of structures: names and how each is built. A new structure is one line here.
 
-use super::{AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid};
+use super::{
+    AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh,
+};
 use crate::build::Builder;
 use crate::{BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, ValidationError};
 
@@ -71,6 +73,18 @@ macro_rules! structures {
                 }
             }
 
+            fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
+                match self {
+                    $(Self::$kind(structure) => structure.intersect_batch(geometry, rays, hits),)*
+                }
+            }
+
+            fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
+                match self {
+                    $(Self::$kind(structure) => structure.occluded_batch(geometry, rays, occluded),)*
+                }
+            }
+
             fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
                 match self {
                     $(Self::$kind(structure) => structure.visit_nodes(visit),)*
@@ -110,6 +124,7 @@ structures! {
         |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
     BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, binned surface area heuristic: the default.",
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
+    BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions.", WideBvh::build;
     Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
     KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build;
 }

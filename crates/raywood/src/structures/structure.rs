@@ -82,7 +82,9 @@ impl<G: Geometry> Structure<G> {
     /// If the two slices differ in length.
     pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "as many hits as rays");
-        parallel::fill(rays, hits, |ray| self.intersect(ray));
+        parallel::fill_pieces(rays, hits, |rays, hits| {
+            self.structure.intersect_batch(&self.geometry, rays, hits);
+        });
     }
 
     /// [`occluded`](Self::occluded) for many rays, over all cores of the caller's rayon pool.
@@ -92,7 +94,9 @@ impl<G: Geometry> Structure<G> {
     /// If the two slices differ in length.
     pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
-        parallel::fill(rays, occluded, |ray| self.occluded(ray));
+        parallel::fill_pieces(rays, occluded, |rays, occluded| {
+            self.structure.occluded_batch(&self.geometry, rays, occluded);
+        });
     }
 
     /// The point that a ray hit, from which the next ray can be spawned. `hit` must be this structure's answer to `ray`.

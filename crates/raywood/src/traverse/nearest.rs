@@ -31,7 +31,14 @@ impl Nearest {
     /// Tests a primitive. Testing it twice changes nothing.
     #[inline]
     pub(crate) fn test<G: Geometry>(&mut self, geometry: &G, ray: &PreparedRay, primitive: u32) {
-        let Some(hit) = hit(geometry, ray, primitive) else { return };
+        if let Some(hit) = hit(geometry, ray, primitive) {
+            self.offer(primitive, hit);
+        }
+    }
+
+    /// Takes a hit if it is nearer, or equally near with a lower number.
+    #[inline]
+    pub(crate) fn offer(&mut self, primitive: u32, hit: PrimitiveHit) {
         let wins = |best: Hit| hit.t < best.t || (hit.t == best.t && primitive < best.primitive);
         if self.best.is_none_or(wins) {
             self.best = Some(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
@@ -44,6 +51,18 @@ impl Nearest {
     #[inline]
     pub(crate) fn t_max(&self) -> f32 {
         self.t_max
+    }
+
+    /// Notes that something blocks the ray, no matter what.
+    #[inline]
+    pub(crate) fn block(&mut self) {
+        self.t_max = f32::NEG_INFINITY;
+    }
+
+    /// Whether it was noted that something blocks the ray.
+    #[inline]
+    pub(crate) fn is_blocked(&self) -> bool {
+        self.t_max == f32::NEG_INFINITY
     }
 
     /// The closest hit of all that was tested.

@@ -5,7 +5,7 @@ use crate::{Aabb, PreparedRay, PrimitiveHit, Vec3};
 
 /// By how much of itself the far distance is lengthened, so that rounding never makes a ray miss a box whose content it hits,
 /// and so that an equally near hit in another box is still found. 2^-20, eight units in the last place; Ize needs two.
-const SLACK: f32 = 1.0 / (1 << 20) as f32;
+pub(crate) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// The distance up to which boxes must be looked into when hits count up to `far`.
 #[inline]

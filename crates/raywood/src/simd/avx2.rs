@@ -1,0 +1,180 @@
+//! AVX2: eight numbers in a register, sixteen in two.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Sub};
+
+use super::{Float, Kernel, Simd};
+
+/// The token of AVX2: whoever has it runs on a processor with it.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2(());
+
+/// Runs a kernel with AVX2.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[target_feature(enable = "avx2")]
+pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx2(()))
+}
+
+/// Asks for all cache lines of a value.
+#[inline(always)]
+pub(super) fn prefetch<T>(value: &T) {
+    const LINE: usize = 64;
+    let start: *const T = value;
+    let mut offset = 0;
+    while offset < size_of::<T>() {
+        // SAFETY: a prefetch reads nothing, and every x86-64 processor has it.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(offset)) };
+        offset += LINE;
+    }
+}
+
+/// Eight numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct F8(__m256);
+
+/// Sixteen numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct F16([F8; 2]);
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $instruction:ident;)*) => {
+        $(
+            impl $trait for F8 {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $method(self, other: Self) -> Self {
+                    // SAFETY: the values came from the token.
+                    Self(unsafe { $instruction(self.0, other.0) })
+                }
+            }
+
+            impl $trait for F16 {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $method(self, other: Self) -> Self {
+                    let ([a, b], [c, d]) = (self.0, other.0);
+                    Self([a.$method(c), b.$method(d)])
+                }
+            }
+        )*
+    };
+}
+
+operators! { Add add _mm256_add_ps; Sub sub _mm256_sub_ps; Mul mul _mm256_mul_ps; Div div _mm256_div_ps; }
+
+impl Float for F8 {
+    type Array = [f32; 8];
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        // SAFETY: the values came from the token. (Of a pair with NaN the instruction takes the second.)
+        Self(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        // SAFETY: the values came from the token.
+        Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: the value came from the token.
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        // SAFETY: the values came from the token.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, other: Self) -> u32 {
+        // SAFETY: the values came from the token.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u32 }
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; 8] {
+        // SAFETY: a vector is an array of its numbers, of the same size.
+        unsafe { std::mem::transmute(self.0) }
+    }
+}
+
+impl Float for F16 {
+    type Array = [f32; 16];
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self([self.0[0].smaller(other.0[0]), self.0[1].smaller(other.0[1])])
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self([self.0[0].larger(other.0[0]), self.0[1].larger(other.0[1])])
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self([self.0[0].abs(), self.0[1].abs()])
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.0[0].less(other.0[0]) | self.0[1].less(other.0[1]) << 8
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, other: Self) -> u32 {
+        self.0[0].less_or_equal(other.0[0]) | self.0[1].less_or_equal(other.0[1]) << 8
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; 16] {
+        // SAFETY: two vectors are an array of their numbers, of the same size.
+        unsafe { std::mem::transmute(self.0.map(F8::to_array)) }
+    }
+}
+
+impl Simd for Avx2 {
+    type F16 = F16;
+    type F8 = F8;
+
+    #[inline(always)]
+    fn splat16(self, number: f32) -> F16 {
+        F16([self.splat8(number); 2])
+    }
+
+    #[inline(always)]
+    fn load16(self, numbers: &[f32; 16]) -> F16 {
+        // SAFETY: the token; sixteen numbers can be read.
+        unsafe {
+            let start = numbers.as_ptr();
+            F16([F8(_mm256_loadu_ps(start)), F8(_mm256_loadu_ps(start.add(8)))])
+        }
+    }
+
+    #[inline(always)]
+    fn splat8(self, number: f32) -> F8 {
+        // SAFETY: the token.
+        F8(unsafe { _mm256_set1_ps(number) })
+    }
+
+    #[inline(always)]
+    fn load8(self, numbers: &[f32; 8]) -> F8 {
+        // SAFETY: the token; eight numbers can be read.
+        F8(unsafe { _mm256_loadu_ps(numbers.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, value: &T) {
+        prefetch(value);
+    }
+}

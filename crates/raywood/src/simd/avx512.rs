@@ -1,0 +1,249 @@
+//! AVX-512: sixteen numbers in a register, sets of lanes in registers of their own.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Sub};
+
+use super::{Float, Kernel, Simd};
+
+/// The token of AVX-512: whoever has it runs on a processor with F, VL, DQ and BW.
+#[derive(Clone, Copy)]
+pub(crate) struct Avx512(());
+
+/// Runs a kernel with AVX-512.
+///
+/// # Safety
+///
+/// The processor has AVX-512 F, VL, DQ and BW.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(Avx512(()))
+}
+
+/// Sixteen numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct F16(__m512);
+
+/// Eight numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct F8(__m256);
+
+macro_rules! float {
+    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $cmp:ident) => {
+        float!(@operator $type, Add, add, $add);
+        float!(@operator $type, Sub, sub, $sub);
+        float!(@operator $type, Mul, mul, $mul);
+        float!(@operator $type, Div, div, $div);
+
+        impl Float for $type {
+            type Array = $array;
+
+            #[inline(always)]
+            fn smaller(self, other: Self) -> Self {
+                // SAFETY: the values came from the token. (Of a pair with NaN the instruction takes the second.)
+                Self(unsafe { $min(self.0, other.0) })
+            }
+
+            #[inline(always)]
+            fn larger(self, other: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $max(self.0, other.0) })
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: the value came from the token.
+                Self(unsafe { $abs(self.0) })
+            }
+
+            #[inline(always)]
+            fn less(self, other: Self) -> u32 {
+                // SAFETY: the values came from the token.
+                u32::from(unsafe { $cmp::<_CMP_LT_OQ>(self.0, other.0) })
+            }
+
+            #[inline(always)]
+            fn less_or_equal(self, other: Self) -> u32 {
+                // SAFETY: the values came from the token.
+                u32::from(unsafe { $cmp::<_CMP_LE_OQ>(self.0, other.0) })
+            }
+
+            #[inline(always)]
+            fn to_array(self) -> $array {
+                // SAFETY: a vector is an array of its numbers, of the same size.
+                unsafe { std::mem::transmute(self.0) }
+            }
+        }
+    };
+    (@operator $type:ident, $trait:ident, $method:ident, $instruction:ident) => {
+        impl $trait for $type {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $instruction(self.0, other.0) })
+            }
+        }
+    };
+}
+
+float!(
+    F16,
+    [f32; 16],
+    _mm512_add_ps,
+    _mm512_sub_ps,
+    _mm512_mul_ps,
+    _mm512_div_ps,
+    _mm512_min_ps,
+    _mm512_max_ps,
+    |x| _mm512_abs_ps(x),
+    _mm512_cmp_ps_mask
+);
+float!(
+    F8,
+    [f32; 8],
+    _mm256_add_ps,
+    _mm256_sub_ps,
+    _mm256_mul_ps,
+    _mm256_div_ps,
+    _mm256_min_ps,
+    _mm256_max_ps,
+    |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
+    _mm256_cmp_ps_mask
+);
+
+impl Simd for Avx512 {
+    type F16 = F16;
+    type F8 = F8;
+
+    #[inline(always)]
+    fn splat16(self, number: f32) -> F16 {
+        // SAFETY: the token.
+        F16(unsafe { _mm512_set1_ps(number) })
+    }
+
+    #[inline(always)]
+    fn load16(self, numbers: &[f32; 16]) -> F16 {
+        // SAFETY: the token; sixteen numbers can be read.
+        F16(unsafe { _mm512_loadu_ps(numbers.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn splat8(self, number: f32) -> F8 {
+        // SAFETY: the token.
+        F8(unsafe { _mm256_set1_ps(number) })
+    }
+
+    #[inline(always)]
+    fn load8(self, numbers: &[f32; 8]) -> F8 {
+        // SAFETY: the token; eight numbers can be read.
+        F8(unsafe { _mm256_loadu_ps(numbers.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, value: &T) {
+        super::avx2::prefetch(value);
+    }
+
+    #[inline(always)]
+    fn store_sorted(
+        self,
+        chosen: u32,
+        keys: F16,
+        items: &[u32; 16],
+        sorted_keys: &mut [f32; 16],
+        sorted_items: &mut [u32; 16],
+    ) -> usize {
+        // SAFETY: the token; sixteen items can be read, and sixteen of both written.
+        unsafe {
+            // The keys' upper 28 bits and the lane are one whole number, negative below all others in lanes that are not chosen.
+            let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+            let bits = _mm512_andnot_si512(_mm512_set1_epi32(15), _mm512_castps_si512(keys.0));
+            let tagged = _mm512_or_si512(bits, lanes);
+            let none = _mm512_set1_epi32(i32::MIN);
+            let packed = _mm512_mask_compress_epi32(none, chosen as u16, tagged);
+            let sorted = match chosen.count_ones() {
+                0 | 1 => packed,
+                2..=4 => sort_four(packed),
+                _ => sort_sixteen(packed),
+            };
+            // A permutation takes the lane from the lowest four bits.
+            let items = _mm512_permutexvar_epi32(sorted, _mm512_loadu_epi32(items.as_ptr().cast()));
+            let keys = _mm512_permutexvar_ps(sorted, keys.0);
+            _mm512_storeu_ps(sorted_keys.as_mut_ptr(), keys);
+            _mm512_storeu_epi32(sorted_items.as_mut_ptr().cast(), items);
+        }
+        chosen.count_ones() as usize
+    }
+}
+
+/// A step of a sorting network: lanes and their partners, the larger number to the lanes of `larger`.
+macro_rules! exchange {
+    ($v:ident, $partners:expr, $larger:expr) => {{
+        let partners = $partners;
+        let (small, large) = (_mm512_min_epi32($v, partners), _mm512_max_epi32($v, partners));
+        $v = _mm512_mask_mov_epi32(small, $larger, large);
+    }};
+}
+
+/// Sorts each four lanes in descending order.
+///
+/// # Safety
+///
+/// The processor has AVX-512.
+#[inline(always)]
+unsafe fn sort_four(v: __m512i) -> __m512i {
+    let mut v = v;
+    // SAFETY: the caller's.
+    unsafe {
+        exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), 0b1001_1001_1001_1001);
+        exchange!(v, _mm512_shuffle_epi32::<0b01_00_11_10>(v), 0b0011_0011_0011_0011);
+        exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), 0b0101_0101_0101_0101);
+    }
+    v
+}
+
+/// Sorts all lanes in descending order: Batcher's bitonic network.
+///
+/// # Safety
+///
+/// The processor has AVX-512.
+#[inline(always)]
+unsafe fn sort_sixteen(v: __m512i) -> __m512i {
+    let mut v = v;
+    // SAFETY: the caller's.
+    unsafe {
+        // Lanes one and two apart are in one quarter, four apart in neighbouring ones, eight apart in halves.
+        macro_rules! one_apart {
+            ($larger:expr) => {
+                exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), $larger)
+            };
+        }
+        macro_rules! two_apart {
+            ($larger:expr) => {
+                exchange!(v, _mm512_shuffle_epi32::<0b01_00_11_10>(v), $larger)
+            };
+        }
+        macro_rules! four_apart {
+            ($larger:expr) => {
+                exchange!(v, _mm512_shuffle_i32x4::<0b10_11_00_01>(v, v), $larger)
+            };
+        }
+        macro_rules! eight_apart {
+            ($larger:expr) => {
+                exchange!(v, _mm512_shuffle_i32x4::<0b01_00_11_10>(v, v), $larger)
+            };
+        }
+        one_apart!(0b1001_1001_1001_1001);
+        two_apart!(0b1100_0011_1100_0011);
+        one_apart!(0b1010_0101_1010_0101);
+        four_apart!(0b1111_0000_0000_1111);
+        two_apart!(0b1100_1100_0011_0011);
+        one_apart!(0b1010_1010_0101_0101);
+        eight_apart!(0b0000_0000_1111_1111);
+        four_apart!(0b0000_1111_0000_1111);
+        two_apart!(0b0011_0011_0011_0011);
+        one_apart!(0b0101_0101_0101_0101);
+    }
+    v
+}

@@ -1,0 +1,57 @@
+//! Vectors of several numbers at once, on whatever instructions the processor has: the only unsafe code of the library.
+//!
+//! Kernels are written once, generic over [`Simd`], and compiled for every [`SimdLevel`]; [`dispatch`] enters the one to use. Values of a
+//! level's vector types come from its token alone, and the token exists only where the processor has the instructions: so what is done with the
+//! values is safe.
+//!
+//! Every operation rounds as the scalar one does, and nothing is fused, so all levels give the same numbers to the bit.
+
+#![allow(unsafe_code)]
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod level;
+mod portable;
+mod vector;
+
+#[cfg(test)]
+mod tests;
+
+pub use level::SimdLevel;
+pub(crate) use portable::Portable;
+pub(crate) use vector::{Float, Simd};
+
+/// Work that is compiled for every level.
+pub(crate) trait Kernel {
+    /// What the work gives.
+    type Output;
+
+    /// Does the work. Must be `#[inline(always)]`, and so must be all functions below it that handle vectors.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Runs a kernel on the best level that the processor has and that is not [ruled out](SimdLevel::active).
+#[inline]
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    dispatch_on(SimdLevel::active(), kernel)
+}
+
+/// Runs a kernel on a level. One that the processor lacks is replaced by the portable one.
+#[inline]
+pub(crate) fn dispatch_on<K: Kernel>(level: SimdLevel, kernel: K) -> K::Output {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        SimdLevel::Avx512 if level.is_available() => {
+            // SAFETY: the processor has the instructions.
+            unsafe { avx512::run(kernel) }
+        }
+        #[cfg(target_arch = "x86_64")]
+        SimdLevel::Avx2 if level.is_available() => {
+            // SAFETY: the processor has the instructions.
+            unsafe { avx2::run(kernel) }
+        }
+        _ => kernel.run(Portable),
+    }
+}

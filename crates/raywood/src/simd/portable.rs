@@ -1,0 +1,103 @@
+//! Arrays: what every processor can do. The compiler makes vector instructions of most of it.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+use super::{Float, Simd};
+use crate::minmax::{larger, smaller};
+
+/// The token of the portable level, which always exists.
+#[derive(Clone, Copy)]
+pub(crate) struct Portable;
+
+/// An array of numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct Array<const N: usize>([f32; N]);
+
+impl<const N: usize> Array<N> {
+    #[inline(always)]
+    fn with(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
+    }
+
+    #[inline(always)]
+    fn lanes(self, other: Self, f: impl Fn(f32, f32) -> bool) -> u32 {
+        (0..N).fold(0, |set, lane| set | u32::from(f(self.0[lane], other.0[lane])) << lane)
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident $operator:tt;)*) => {
+        $(impl<const N: usize> $trait for Array<N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with(other, |a, b| a $operator b)
+            }
+        })*
+    };
+}
+
+operators! { Add add +; Sub sub -; Mul mul *; Div div /; }
+
+impl<const N: usize> Float for Array<N> {
+    type Array = [f32; N];
+
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        self.with(other, smaller)
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.with(other, larger)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.lanes(other, |a, b| a < b)
+    }
+
+    #[inline(always)]
+    fn less_or_equal(self, other: Self) -> u32 {
+        self.lanes(other, |a, b| a <= b)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; N] {
+        self.0
+    }
+}
+
+impl Simd for Portable {
+    type F16 = Array<16>;
+    type F8 = Array<8>;
+
+    #[inline(always)]
+    fn splat16(self, number: f32) -> Array<16> {
+        Array([number; 16])
+    }
+
+    #[inline(always)]
+    fn load16(self, numbers: &[f32; 16]) -> Array<16> {
+        Array(*numbers)
+    }
+
+    #[inline(always)]
+    fn splat8(self, number: f32) -> Array<8> {
+        Array([number; 8])
+    }
+
+    #[inline(always)]
+    fn load8(self, numbers: &[f32; 8]) -> Array<8> {
+        Array(*numbers)
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
+}

@@ -1,0 +1,145 @@
+//! Every level against scalar arithmetic, to the bit.
+
+use super::{Float, Kernel, Simd, SimdLevel, dispatch_on};
+
+/// Numbers that tell operations apart: zeros of both signs, infinities, NaN, subnormal and usual ones.
+const NUMBERS: [f32; 16] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    1e-40,
+    3.5,
+    -7.25,
+    1e30,
+    -1e30,
+    0.1,
+    0.2,
+    1e-30,
+    16_777_217.0,
+];
+
+/// All results of all operations on a pair of vectors, as bits, all NaN alike.
+struct Everything([f32; 16], [f32; 16]);
+
+fn bits(numbers: impl IntoIterator<Item = f32>, all: &mut Vec<u32>) {
+    all.extend(numbers.into_iter().map(|x| if x.is_nan() { u32::MAX } else { x.to_bits() }));
+}
+
+impl Kernel for Everything {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Vec<u32> {
+        let mut all = Vec::new();
+        let (a, b) = (simd.load16(&self.0), simd.load16(&self.1));
+        for vector in [a + b, a - b, a * b, a / b, a.smaller(b), a.larger(b), a.abs()] {
+            bits(vector.to_array(), &mut all);
+        }
+        all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
+        bits(simd.splat16(self.0[5]).to_array(), &mut all);
+
+        let half = |numbers: &[f32; 16]| *numbers.first_chunk::<8>().expect("eight of sixteen");
+        let (a, b) = (simd.load8(&half(&self.0)), simd.load8(&half(&self.1)));
+        for vector in [a + b, a - b, a * b, a / b, a.smaller(b), a.larger(b), a.abs()] {
+            bits(vector.to_array(), &mut all);
+        }
+        all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
+        bits(simd.splat8(self.0[3]).to_array(), &mut all);
+        simd.prefetch(&self.0);
+        all
+    }
+}
+
+/// The available levels.
+fn levels() -> impl Iterator<Item = SimdLevel> {
+    SimdLevel::ALL.iter().copied().filter(|level| level.is_available())
+}
+
+#[test]
+fn all_levels_compute_the_same_to_the_bit() {
+    for shift in 0..16 {
+        let mut other = NUMBERS;
+        other.rotate_left(shift);
+        let expected = dispatch_on(SimdLevel::Portable, Everything(NUMBERS, other));
+        for level in levels() {
+            let found = dispatch_on(level, Everything(NUMBERS, other));
+            assert_eq!(found, expected, "{}, shifted by {shift}", level.name());
+        }
+    }
+}
+
+#[test]
+fn the_portable_level_is_scalar_arithmetic() {
+    let mut other = NUMBERS;
+    other.rotate_left(3);
+    let found = dispatch_on(SimdLevel::Portable, Everything(NUMBERS, other));
+    let mut expected = Vec::new();
+    let pairs = || NUMBERS.into_iter().zip(other);
+    bits(pairs().map(|(a, b)| a + b), &mut expected);
+    bits(pairs().map(|(a, b)| a - b), &mut expected);
+    bits(pairs().map(|(a, b)| a * b), &mut expected);
+    bits(pairs().map(|(a, b)| a / b), &mut expected);
+    bits(pairs().map(|(a, b)| if a < b { a } else { b }), &mut expected);
+    bits(pairs().map(|(a, b)| if a > b { a } else { b }), &mut expected);
+    bits(NUMBERS.map(f32::abs), &mut expected);
+    let set = |holds: fn(f32, f32) -> bool| {
+        pairs().enumerate().fold(0, |set, (lane, (a, b))| set | u32::from(holds(a, b)) << lane)
+    };
+    expected.extend([set(|a, b| a < b), set(|a, b| a <= b), set(|a, b| b < a)]);
+    assert_eq!(found[..expected.len()], expected);
+}
+
+/// Sorts the chosen of sixteen keys.
+struct Sort(u32, [f32; 16]);
+
+impl Kernel for Sort {
+    type Output = Vec<(f32, u32)>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let items: [u32; 16] = std::array::from_fn(|lane| 100 + lane as u32);
+        let (mut keys, mut sorted) = ([-1.0; 16], [0; 16]);
+        let all = simd.load16(&self.1);
+        let count = simd.store_sorted(self.0, all, &items, &mut keys, &mut sorted);
+        keys.into_iter().zip(sorted).take(count).collect()
+    }
+}
+
+#[test]
+fn sorting_keeps_every_chosen_pair_and_puts_large_keys_first() {
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state >> 8
+    };
+    for _ in 0..2000 {
+        let keys: [f32; 16] = std::array::from_fn(|_| random() as f32 * 1e-3);
+        let chosen = random() & random() & 0xffff;
+        for level in levels() {
+            let sorted = dispatch_on(level, Sort(chosen, keys));
+            let mut lanes: Vec<_> = sorted.iter().map(|&(_, item)| item - 100).collect();
+            for &(key, item) in &sorted {
+                assert_eq!(key, keys[item as usize - 100], "{}", level.name());
+            }
+            // The lowest four bits of a key do not count.
+            let descends = |pair: &[(f32, u32)]| pair[0].0 >= pair[1].0 * (1.0 - 2e-6);
+            assert!(sorted.windows(2).all(descends), "{}: {sorted:?}", level.name());
+            lanes.sort_unstable();
+            let expected: Vec<_> = (0..16).filter(|lane| chosen >> lane & 1 == 1).collect();
+            assert_eq!(lanes, expected, "{}", level.name());
+        }
+    }
+}
+
+#[test]
+fn levels_have_names() {
+    for &level in SimdLevel::ALL {
+        assert_eq!(SimdLevel::from_name(level.name()), Some(level));
+    }
+    assert_eq!(SimdLevel::from_name("mmx"), None);
+    assert!(SimdLevel::Portable.is_available() && SimdLevel::active().is_available());
+}

@@ -1,0 +1,99 @@
+//! Building the wide tree from a binary one.
+
+use super::WideBvh;
+use super::collapse::Plan;
+use super::node::{Reference, WideNode};
+use crate::geometry::{LANES, TriangleBlock};
+use crate::{BuildError, BuildOptions, Bvh2, Geometry};
+
+/// Builds the tree.
+pub(super) fn build<G: Geometry>(
+    geometry: &G,
+    options: &BuildOptions,
+) -> Result<WideBvh, BuildError> {
+    let max_leaf_size = options.max_leaf_size.min(LANES);
+    let tree = Bvh2::build(geometry, &BuildOptions { max_leaf_size, ..options.clone() })?;
+    let plan = Plan::new(&tree);
+    let mut builder = Wide {
+        geometry,
+        tree: &tree,
+        plan: &plan,
+        depth: 0,
+        nodes: Vec::new(),
+        blocks: Vec::new(),
+    };
+    let root = match tree.nodes() {
+        [] => Reference::NOTHING,
+        _ if plan.is_leaf(0) => builder.leaf(0),
+        _ => {
+            builder.nodes.push(WideNode::EMPTY);
+            builder.fill(0, 0, 1);
+            Reference::node(0)
+        }
+    };
+    let Wide { depth, nodes, blocks, .. } = builder;
+    if nodes.len().max(blocks.len()) > Reference::NUMBERS {
+        return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
+    }
+    let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
+    Ok(WideBvh { bounds, primitives, depth, root, nodes, blocks })
+}
+
+/// A wide tree that is being made.
+struct Wide<'a, G> {
+    geometry: &'a G,
+    tree: &'a Bvh2,
+    plan: &'a Plan,
+    depth: usize,
+    nodes: Vec<WideNode>,
+    blocks: Vec<TriangleBlock>,
+}
+
+impl<G: Geometry> Wide<'_, G> {
+    /// Fills a node, which takes the place of node `number` of the binary tree, and everything below it. The children lie side by side.
+    fn fill(&mut self, index: usize, number: usize, depth: usize) {
+        self.depth = self.depth.max(depth);
+        let children = self.plan.children(self.tree, number);
+        let mut nodes = Vec::new();
+        for (lane, number) in children.into_iter().enumerate() {
+            let child = if self.plan.is_leaf(number) {
+                self.leaf(number)
+            } else {
+                let index = self.nodes.len();
+                self.nodes.push(WideNode::EMPTY);
+                nodes.push((index, number));
+                Reference::node(index)
+            };
+            let bounds = self.tree.nodes()[number].bounds();
+            self.nodes[index].set(lane, &bounds, child);
+        }
+        for (index, number) in nodes {
+            self.fill(index, number, depth + 1);
+        }
+    }
+
+    /// A leaf of all primitives below node `number` of the binary tree.
+    fn leaf(&mut self, number: usize) -> Reference {
+        // Their numbers lie side by side, from those of the leftmost leaf to those of the rightmost.
+        let nodes = self.tree.nodes();
+        let (mut first, mut last) = (&nodes[number], &nodes[number]);
+        while !first.is_leaf() {
+            first = self.tree.children(first)[0];
+        }
+        while !last.is_leaf() {
+            last = self.tree.children(last)[1];
+        }
+        let range = first.left_first() as usize..(last.left_first() + last.count()) as usize;
+        let primitives = &self.tree.primitive_indices()[range];
+
+        let mut block = TriangleBlock::default();
+        let mut mixed = false;
+        for (lane, &primitive) in primitives.iter().enumerate() {
+            let triangle = self.geometry.triangle(primitive);
+            mixed |= triangle.is_none();
+            block.set(lane, primitive, triangle.unwrap_or_default());
+        }
+        self.blocks.push(block);
+        Reference::leaf(self.blocks.len() - 1, primitives.len(), mixed)
+    }
+}

@@ -1,0 +1,118 @@
+//! The node of sixteen children, and what refers to nodes and leaves.
+
+use crate::{Aabb, Vec3};
+
+/// Children of a node.
+pub(super) const WIDTH: usize = 16;
+
+/// A node: the boxes of up to sixteen children, and where these are. Seven cache lines.
+///
+/// | bytes      | content                                                                             |
+/// | ---------- | ----------------------------------------------------------------------------------- |
+/// | 0 to 383   | six planes a child: smallest x of all children, largest x, smallest y, ..., largest z |
+/// | 384 to 447 | a [`Reference`] a child                                                             |
+///
+/// A child that is not there has an inverted box, which no ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub(super) struct WideNode {
+    /// By axis and side, `2 * axis` the smallest and `2 * axis + 1` the largest coordinates.
+    pub(super) planes: [[f32; WIDTH]; 6],
+    pub(super) children: [u32; WIDTH],
+}
+
+const _: () = assert!(size_of::<WideNode>() == 448);
+
+impl WideNode {
+    /// A node without children.
+    pub(super) const EMPTY: Self = Self {
+        planes: [
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+        ],
+        children: [Reference::NOTHING.0; WIDTH],
+    };
+
+    /// Puts a child into a lane.
+    pub(super) fn set(&mut self, lane: usize, bounds: &Aabb, child: Reference) {
+        for axis in 0..3 {
+            self.planes[2 * axis][lane] = bounds.min[axis];
+            self.planes[2 * axis + 1][lane] = bounds.max[axis];
+        }
+        self.children[lane] = child.0;
+    }
+
+    /// The children that are there, with their boxes.
+    pub(super) fn children(&self) -> impl Iterator<Item = (Aabb, Reference)> {
+        let corner = |side: usize, lane: usize| {
+            let [x, y, z] = [0, 1, 2].map(|axis| self.planes[2 * axis + side][lane]);
+            Vec3::new(x, y, z)
+        };
+        (0..WIDTH)
+            .map(move |lane| {
+                let bounds = Aabb { min: corner(0, lane), max: corner(1, lane) };
+                (bounds, Reference(self.children[lane]))
+            })
+            .filter(|(_, child)| *child != Reference::NOTHING)
+    }
+}
+
+/// Where a node or leaf is, in 32 bits.
+///
+/// | bits    | node        | leaf                                                   |
+/// | ------- | ----------- | ------------------------------------------------------ |
+/// | 0       | 0           | 1                                                      |
+/// | 1 to 3  | 0           | the number of its primitives, less one                 |
+/// | 4       | 0           | whether there are primitives in it that are no triangles |
+/// | 5 to 31 | its number  | the number of its block                                |
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Reference(pub(super) u32);
+
+impl Reference {
+    /// Nothing: of a tree without primitives, of a child that is not there, and the end of a stack.
+    pub(super) const NOTHING: Self = Self(u32::MAX);
+
+    /// Numbers of nodes and blocks lie below this.
+    pub(super) const NUMBERS: usize = (1 << 27) - 1;
+
+    pub(super) fn node(index: usize) -> Self {
+        Self((index as u32) << 5)
+    }
+
+    pub(super) fn leaf(index: usize, count: usize, mixed: bool) -> Self {
+        Self((index as u32) << 5 | u32::from(mixed) << 4 | (count as u32 - 1) << 1 | 1)
+    }
+
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// The number of the node or block.
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        (self.0 >> 5) as usize
+    }
+
+    /// How many primitives a leaf has.
+    #[inline(always)]
+    pub(super) fn count(self) -> usize {
+        (self.0 >> 1 & 7) as usize + 1
+    }
+
+    /// The lanes of a leaf's block that hold primitives.
+    #[inline(always)]
+    pub(super) fn lanes(self) -> u32 {
+        (2 << (self.0 >> 1 & 7)) - 1
+    }
+
+    /// Whether a leaf has primitives that are no triangles.
+    #[inline(always)]
+    pub(super) fn is_mixed(self) -> bool {
+        self.0 >> 4 & 1 == 1
+    }
+}
