@@ -69,6 +69,16 @@ impl TriangleBlock {
         Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
+    /// The corners of one number, moved and sheared as `watertight.rs` does it.
+    #[inline(always)]
+    fn sheared<S: Simd>(&self, simd: S, ray: &PreparedRay, corner: usize) -> [S::F8; 3] {
+        let corner = &self.corners[corner];
+        let x = simd.load8(&corner[ray.axes[0]]) - simd.splat8(ray.permuted_origin[0]);
+        let y = simd.load8(&corner[ray.axes[1]]) - simd.splat8(ray.permuted_origin[1]);
+        let z = simd.load8(&corner[ray.axes[2]]) - simd.splat8(ray.permuted_origin[2]);
+        [x - simd.splat8(ray.shear[0]) * z, y - simd.splat8(ray.shear[1]) * z, z]
+    }
+
     /// Tests the triangles in the given lanes: the steps of `intersect_triangle`, each operation the same, in the same order, so that the numbers are
     /// the same. Doubtful lanes are left to it. Hits that are clearly beyond `limit` are left out.
     #[inline(always)]
@@ -81,17 +91,9 @@ impl TriangleBlock {
     ) -> BlockHits {
         let mut answer =
             BlockHits { hit: 0, doubtful: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
-        let number = |x: f32| simd.splat8(x);
-
         // Move and shear the vertices.
-        let slopes = [number(ray.shear[0]), number(ray.shear[1])];
-        let origin = ray.permuted_origin.map(number);
-        let sheared = |corner: usize| {
-            let [x, y, z] =
-                [0, 1, 2].map(|k| simd.load8(&self.corners[corner][ray.axes[k]]) - origin[k]);
-            [x - slopes[0] * z, y - slopes[1] * z, z]
-        };
-        let (a, b, c) = (sheared(0), sheared(1), sheared(2));
+        let (a, b, c) =
+            (self.sheared(simd, ray, 0), self.sheared(simd, ray, 1), self.sheared(simd, ray, 2));
 
         // The edge functions, and what their signs can be trusted to say.
         let e0 = c[0] * b[1] - c[1] * b[0];
@@ -99,13 +101,15 @@ impl TriangleBlock {
         let e2 = b[0] * a[1] - b[1] * a[0];
         let least = e0.smaller(e1).smaller(e2);
         let greatest = e0.larger(e1).larger(e2);
-        let across = [a[0], a[1], b[0], b[1], c[0], c[1]]
-            .into_iter()
-            .fold(number(0.0), |largest, x| x.abs().larger(largest));
-        let along =
-            [a[2], b[2], c[2]].into_iter().fold(number(0.0), |largest, x| x.abs().larger(largest));
-        let edge_error = number(EDGE_ERROR) * across * (across + along) + number(f32::MIN_POSITIVE);
-        let negative_error = number(0.0) - edge_error;
+        let across = a[0].abs().larger(simd.splat8(0.0));
+        let across = b[0].abs().larger(a[1].abs().larger(across));
+        let across = c[0].abs().larger(b[1].abs().larger(across));
+        let across = c[1].abs().larger(across);
+        let along = a[2].abs().larger(simd.splat8(0.0));
+        let along = c[2].abs().larger(b[2].abs().larger(along));
+        let edge_error =
+            simd.splat8(EDGE_ERROR) * across * (across + along) + simd.splat8(f32::MIN_POSITIVE);
+        let negative_error = simd.splat8(0.0) - edge_error;
         let below = least.less(negative_error);
         let above = edge_error.less(greatest);
         let possible = lanes & !(below & above);
@@ -115,8 +119,8 @@ impl TriangleBlock {
         let determinant = e0 + e1 + e2;
         let size = determinant.abs();
         let certain = edge_error.less(least) | greatest.less(negative_error);
-        let trusted = number(LEAST_DETERMINANT).less_or_equal(size)
-            & size.less_or_equal(number(GREATEST_DETERMINANT));
+        let trusted = simd.splat8(LEAST_DETERMINANT).less_or_equal(size)
+            & size.less_or_equal(simd.splat8(GREATEST_DETERMINANT));
         let inside = possible & certain & trusted;
         answer.doubtful = possible & !inside;
         if inside == 0 {
@@ -124,20 +128,21 @@ impl TriangleBlock {
         }
 
         // The weights, the depth, and how far off it may be.
-        let reciprocal = number(1.0) / determinant;
+        let reciprocal = simd.splat8(1.0) / determinant;
         let (w, u, v) = (e0 * reciprocal, e1 * reciprocal, e2 * reciprocal);
         let z = w * a[2] + u * b[2] + v * c[2];
-        let z_error =
-            number(DEPTH_ERROR) * along * (across * across * reciprocal.abs() + number(1.0));
-        let inexact = (number(DISTANCE_TOLERANCE) * z.abs()).less(z_error);
+        let z_error = simd.splat8(DEPTH_ERROR)
+            * along
+            * (across * across * reciprocal.abs() + simd.splat8(1.0));
+        let inexact = (simd.splat8(DISTANCE_TOLERANCE) * z.abs()).less(z_error);
         answer.doubtful |= inside & inexact;
 
         // A trusted distance is off by less than the tolerance: twice that beyond the limit is too far, whatever rounding did.
-        let t = z * number(ray.shear[2]);
+        let t = z * simd.splat8(ray.shear[2]);
         let far_enough = limit + 2.0 * DISTANCE_TOLERANCE * limit.abs();
-        let accepted = number(ray.t_min).less_or_equal(t)
-            & t.less(number(ray.t_max))
-            & t.less_or_equal(number(far_enough));
+        let accepted = simd.splat8(ray.t_min).less_or_equal(t)
+            & t.less(simd.splat8(ray.t_max))
+            & t.less_or_equal(simd.splat8(far_enough));
         answer.hit = inside & !inexact & accepted;
         (answer.t, answer.u, answer.v) = (t.to_array(), u.to_array(), v.to_array());
         answer

@@ -13,8 +13,8 @@ pub(crate) struct Avx512(());
 ///
 /// # Safety
 ///
-/// The processor has AVX-512 F, VL, DQ and BW.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+/// The level is [available](super::SimdLevel::is_available).
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
 }
