@@ -7,8 +7,7 @@ use raywood_scene::{LoadOptions, builtin, load_file};
 fn main() {
     let mut args = std::env::args().skip(1);
     let name = args.next().expect("scene");
-    let kinds: Vec<_> =
-        args.map(|k| StructureKind::from_name(&k).expect("a structure")).collect();
+    let kinds: Vec<_> = args.map(|k| StructureKind::from_name(&k).expect("a structure")).collect();
     let scene = match name.strip_prefix("builtin:") {
         Some(name) => builtin(name).expect("a scene"),
         None => load_file(name.as_ref(), &LoadOptions::default()).expect("a scene"),

@@ -80,9 +80,43 @@ fn a_triangle_that_only_touches_a_cell_is_in_it() {
     ];
     for (min, max) in touched {
         assert!(!mesh.clipped_bounds(0, &Aabb::new(min, max)).is_empty(), "{min:?} {max:?}");
+        assert!(mesh.overlaps(0, &Aabb::new(min, max)), "{min:?} {max:?}");
     }
     // The corner of its box that the triangle does not reach.
-    assert!(mesh.clipped_bounds(0, &Aabb::new([0.6, 0.6, -1.0], [1.0, 1.0, 1.0])).is_empty());
+    let beyond = Aabb::new([0.6, 0.6, -1.0], [1.0, 1.0, 1.0]);
+    assert!(mesh.clipped_bounds(0, &beyond).is_empty() && !mesh.overlaps(0, &beyond));
+}
+
+#[test]
+fn overlap_and_clipping_agree_but_for_rounding() {
+    let mut rng = Rng::new(11);
+    let (mut overlapping, mut apart) = (0, 0);
+    for scale in [1.0, 1e-30, 1e30] {
+        for (far, length) in [(0.0, 1.0), (1000.0, 1.0), (0.0, 1e-4), (10.0, 1e3)] {
+            for i in 0..2000 {
+                let center = rng.in_cube() + Vec3::splat(far);
+                let mut corner = |length: f32| scale * (center + length * rng.in_cube());
+                // Every other triangle is a sliver.
+                let (a, b) = (corner(length), corner(length));
+                let c = if i % 2 == 0 { corner(length) } else { a + 0.3 * (b - a) };
+                let cell = Aabb::of_points([corner(1.0), corner(1.0)]);
+                let mesh = TriangleMesh::new(vec![a, b, c], vec![[0, 1, 2]]).expect("a mesh");
+                let wider = |by: f32| {
+                    let by = Vec3::splat(by * scale * (far + length + 1.0));
+                    Aabb { min: cell.min - by, max: cell.max + by }
+                };
+                let clipped = |cell: &Aabb| !mesh.clipped_bounds(0, cell).is_empty();
+                if mesh.overlaps(0, &cell) {
+                    overlapping += 1;
+                    assert!(clipped(&wider(1e-6)), "{a:?} {b:?} {c:?} {cell:?}");
+                } else {
+                    apart += 1;
+                    assert!(!clipped(&wider(-1e-6)), "{a:?} {b:?} {c:?} {cell:?}");
+                }
+            }
+        }
+    }
+    assert!(overlapping > 3000 && apart > 3000, "{overlapping} {apart}");
 }
 
 #[test]

@@ -50,6 +50,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+        match self.in_second(primitive) {
+            None => self.first.overlaps(primitive, cell),
+            Some(primitive) => self.second.overlaps(primitive, cell),
+        }
+    }
+
     #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         match self.in_second(primitive) {

@@ -3,6 +3,7 @@
 mod clip;
 mod joined;
 mod prepared_ray;
+mod separation;
 mod spheres;
 mod surface;
 mod triangle_block;
@@ -61,6 +62,14 @@ pub trait Geometry: Sync {
         None
     }
 
+    /// Whether a part of the primitive may lie in `cell`: what structures that divide space ask most often.
+    ///
+    /// It must hold wherever [`clipped_bounds`](Self::clipped_bounds) would have to hold a point, and may hold elsewhere. The default clips; a
+    /// geometry that can tell sooner makes builds faster.
+    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+        !self.clipped_bounds(primitive, cell).is_empty()
+    }
+
     /// The nearest hit of the ray with this primitive at `ray.t_min <= t < ray.t_max`, if any.
     ///
     /// `t` must be a number and inside the interval; a caller may rely on it.
@@ -87,6 +96,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
 
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         (**self).triangle(primitive)
+    }
+
+    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+        (**self).overlaps(primitive, cell)
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::clip::clipped_triangle_bounds;
+use super::separation::triangle_overlaps;
 use super::watertight::intersect_triangle;
 use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
 use crate::{Aabb, Hit, Ray, Vec3};
@@ -145,6 +146,10 @@ impl Geometry for TriangleMesh {
 
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         Some(self.corners(primitive))
+    }
+
+    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+        triangle_overlaps(self.corners(primitive), cell)
     }
 
     #[inline(always)]
