@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use raywood::{AccelerationStructure, BuildError, BuildOptions, Counts, Geometry, Octree};
 use raywood::{TriangleMesh, Vec3};
-use raywood_testkit::{Rng, nasty, rays};
+use raywood_testkit::{Rng, nasty, rays, shapes};
 
 /// How many references a primitive may have on average.
 const MAX_REFERENCES: usize = 8;
@@ -66,6 +66,18 @@ fn a_flat_scene_is_divided_in_four() {
     // A triangle that touches the plane between two cells belongs to one of them.
     assert_eq!(stats.references, stats.primitives, "{stats}");
     assert_eq!((stats.depth, stats.max_leaf_primitives), (5, 8), "{stats}");
+}
+
+#[test]
+fn small_things_in_a_wide_and_flat_scene_get_small_leaves() {
+    // A fine ball on a floor a thousand times as wide: cells as flat as the scene would cut the ball's triangles to pieces.
+    let at = |x: f32, z: f32| Vec3::new(x, -1.0, z);
+    let mut corners = vec![[at(-1e3, -1e3), at(1e3, -1e3), at(0.0, 1e3)]];
+    let ball = shapes::uv_sphere(60, Vec3::ZERO, 1.0);
+    corners.extend((0..ball.len() as u32).map(|triangle| ball.corners(triangle)));
+    let (_, stats) = build(&mesh(corners), &BuildOptions::default());
+    assert!(stats.references < 5 * stats.primitives, "{stats}");
+    assert!(stats.references < 10 * stats.leaves, "{stats}");
 }
 
 #[test]

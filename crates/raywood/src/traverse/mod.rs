@@ -3,6 +3,7 @@
 
 pub(crate) mod closest;
 pub(crate) mod mailbox;
+pub(crate) mod margins;
 pub(crate) mod nearest;
 pub(crate) mod occluded;
 mod probe;

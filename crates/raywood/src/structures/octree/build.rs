@@ -16,6 +16,9 @@ const MAX_TOTAL_REFERENCES: f64 = 4.29e9;
 /// Cells with more primitives than this build their octants in parallel.
 const PARALLEL_CELL: usize = 2048;
 
+/// Cells with more primitives than this have them placed in parallel: the few at the top, before there are octants to share out.
+const PARALLEL_PLACEMENT: usize = 1 << 16;
+
 /// Builds the octree; the options are within their ranges.
 pub(super) fn build<G: Geometry>(
     geometry: &G,
@@ -27,7 +30,7 @@ pub(super) fn build<G: Geometry>(
         parallel::fold(&bounds, PackedAabb::EMPTY, PackedAabb::grow, PackedAabb::grow).into();
     let (mut nodes, mut references) = (Vec::new(), Vec::new());
     if n > 0 {
-        let placement = Placement::new(geometry, &root);
+        let placement = Placement::new(geometry);
         let builder = OctreeBuilder { bounds: &bounds, placement, options };
         let allowance = MAX_REFERENCES.min(MAX_TOTAL_REFERENCES / n as f64);
         let mut lists = Lists { primitives: (0..n as u32).collect(), octants: Vec::new() };
@@ -151,15 +154,23 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
         }
 
         // Find each primitive's octants and how many each octant has.
-        let mut counts = [0usize; 8];
-        lists.octants.clear();
-        for &primitive in &lists.primitives[primitives.clone()] {
+        let Lists { primitives: all, octants } = lists;
+        let members = &all[primitives.clone()];
+        let place = |primitive: u32| {
             let bounds = self.bounds[primitive as usize].into();
-            let octants = self.placement.octants(primitive, &bounds, &cell.bounds, middle);
+            self.placement.octants(primitive, &bounds, &cell.bounds, middle)
+        };
+        octants.clear();
+        if count > PARALLEL_PLACEMENT {
+            *octants = parallel::map(count, |i| place(members[i]));
+        } else {
+            octants.extend(members.iter().map(|&primitive| place(primitive)));
+        }
+        let mut counts = [0usize; 8];
+        for &set in &*octants {
             for (number, count) in counts.iter_mut().enumerate() {
-                *count += usize::from(octants >> number & 1);
+                *count += usize::from(set >> number & 1);
             }
-            lists.octants.push(octants);
         }
 
         // Stop where dividing costs more than it saves by the surface area heuristic, where an octant has a quarter of the cell's

@@ -12,7 +12,7 @@ impl Octree {
         if primitives != self.primitives as usize || self.nodes.is_empty() != (primitives == 0) {
             return Err(ValidationError::NodeCount { nodes: self.nodes.len(), primitives });
         }
-        let placement = Placement::new(geometry, &self.bounds);
+        let placement = Placement::new(geometry);
         let all: Vec<u32> = (0..self.primitives).collect();
         for &primitive in &all {
             let (bounds, content) = (self.bounds, geometry.bounds(primitive));

@@ -1,13 +1,13 @@
 //! The way of a ray through the octree: front to back, by the distances to the planes that bound and divide each cell, in the
 //! spirit of Revelles, Ureña and Lastra, "An Efficient Parametric Algorithm for Octree Traversal", WSCG 2000.
 //!
-//! Theirs steps from octant to octant by comparing distances, and follows one chain of cells. Here all octants are tested as slabs with
-//! the slack that every structure has, so that rays in planes and through edges visit all the cells they touch.
+//! Theirs steps from octant to octant by comparing distances, and follows one chain of cells. Here all octants are tested at once, as slabs
+//! between planes as thick as `traverse/margins.rs` says, so that rays in planes and through edges visit all the cells they touch.
 
 use super::cell::{middle, octant};
 use super::{MAX_LEVELS, Node, Octree};
 use crate::minmax::{larger, smaller};
-use crate::traverse::slab::lengthened;
+use crate::traverse::margins::Margins;
 use crate::{Aabb, PreparedRay, Probe, Vec3};
 
 /// An interior cell some of whose octants are still to be visited.
@@ -15,8 +15,21 @@ use crate::{Aabb, PreparedRay, Probe, Vec3};
 struct Frame {
     node: Node,
     cell: Aabb,
+    middle: Vec3,
     /// These octants, numbered as the ray meets them.
     waiting: u8,
+    /// Where the ray enters each octant, numbered so.
+    near: [f32; 8],
+}
+
+impl Frame {
+    const NONE: Self = Self {
+        node: Node { first: 0, content: 0 },
+        cell: Aabb { min: Vec3::ZERO, max: Vec3::ZERO },
+        middle: Vec3::ZERO,
+        waiting: 0,
+        near: [0.0; 8],
+    };
 }
 
 /// Shows `visit` the references of every leaf that the ray meets, front to back. The answer is the distance from which on cells are
@@ -30,46 +43,53 @@ pub(super) fn walk<P: Probe>(
 ) {
     let Some(&root) = tree.nodes.first() else { return };
     let flip = ray.entry_corners[0] | ray.entry_corners[1] << 1 | ray.entry_corners[2] << 2;
-    let mut limit = ray.t_max;
+    let margins = Margins::new(&tree.bounds, ray);
+    let begin = -margins.limit(-ray.t_min);
+    let mut end = margins.limit(ray.t_max);
 
     // At most one frame a level.
-    let empty = Frame { node: Node::default(), cell: Aabb::EMPTY, waiting: 0 };
-    let mut stack = [empty; MAX_LEVELS];
+    let mut stack = [Frame::NONE; MAX_LEVELS];
     let mut height = 0;
     let (mut node, mut cell) = (root, tree.bounds);
     loop {
         probe.nodes(1);
-        let octants = node.octants();
-        if octants == 0 {
+        if node.count() > 0 {
             let Some(nearer) = visit(probe, tree.leaf_primitives(&node)) else { return };
-            limit = nearer;
+            end = margins.limit(nearer);
         } else {
+            let octants = node.octants();
             probe.boxes(octants.count_ones() as usize);
-            let waiting = flipped(octants, flip) & touched(ray, &cell, limit);
+            let middle = middle(&cell);
+            let (touched, near) = meet(ray, &margins, &cell, middle, begin, end);
+            let waiting = flipped(octants, flip) & touched;
             if waiting != 0 {
-                stack[height] = Frame { node, cell, waiting };
+                stack[height] = Frame { node, cell, middle, waiting, near };
                 height += 1;
             }
         }
 
-        // On to the next octant that begins before the limit. An octant comes after all those that the ray could leave for it: their
+        // On to the next octant that begins before the end. An octant comes after all those that the ray could leave for it: their
         // numbers along the ray have fewer bits set, so they are smaller.
-        let end = lengthened(limit);
-        (node, cell) = loop {
+        loop {
             if height == 0 {
                 return;
             }
             let top = &mut stack[height - 1];
-            let number = top.waiting.trailing_zeros() as usize ^ flip;
-            let (parent, child) = (top.node, octant(&top.cell, middle(&top.cell), number));
+            let turned = top.waiting.trailing_zeros() as usize;
             top.waiting &= top.waiting - 1;
             if top.waiting == 0 {
                 height -= 1;
             }
-            if entry(ray, &child) <= end {
-                break (tree.nodes[parent.child(number)], child);
+            if top.near[turned & 7] <= end {
+                let number = turned ^ flip;
+                node = tree.nodes[top.node.child(number)];
+                // Nobody asks where a leaf lies.
+                if node.count() == 0 {
+                    cell = octant(&top.cell, top.middle, number);
+                }
+                break;
             }
-        };
+        }
     }
 }
 
@@ -81,38 +101,55 @@ fn flipped(set: u8, flip: usize) -> u8 {
     if flip & 4 != 0 { y.rotate_left(4) } else { y }
 }
 
-/// The octants of a cell that the ray meets before the limit, numbered as it meets them: bit `a` of the number is set in those
-/// that are further along axis `a`.
+/// The octants of a cell that the ray meets in an interval and where it enters each, numbered as it meets them: bit `a` of the number is
+/// set in those that are further along axis `a`.
 #[inline]
-fn touched(ray: &PreparedRay, cell: &Aabb, limit: f32) -> u8 {
-    let ends = [cell.min.to_array(), cell.max.to_array()];
-    let middle = middle(cell).to_array();
-    let (mut near, mut far) = ([ray.t_min; 8], [limit; 8]);
-    for axis in 0..3 {
-        let first = ray.entry_corners[axis] & 1;
-        let enter = distance(ray, axis, ends[first][axis]);
-        let cross = distance(ray, axis, middle[axis]);
-        let leave = distance(ray, axis, ends[1 - first][axis]);
-        for number in 0..8 {
-            let further = number >> axis & 1 == 1;
-            near[number] = larger(if further { cross } else { enter }, near[number]);
-            far[number] = smaller(if further { leave } else { cross }, far[number]);
-        }
+fn meet(
+    ray: &PreparedRay,
+    margins: &Margins,
+    cell: &Aabb,
+    middle: Vec3,
+    begin: f32,
+    end: f32,
+) -> (u8, [f32; 8]) {
+    let [x, y, z] = [
+        halves(ray, margins, cell, middle, 0),
+        halves(ray, margins, cell, middle, 1),
+        halves(ray, margins, cell, middle, 2),
+    ];
+    let near_x = [larger(x.near[0], begin), larger(x.near[1], begin)];
+    let far_x = [smaller(x.far[0], end), smaller(x.far[1], end)];
+    let mut near = [0.0; 8];
+    let mut touched = 0;
+    for further in 0..4 {
+        let (i, j) = (further & 1, further >> 1);
+        let near_xy = larger(y.near[j], near_x[i]);
+        let far_xy = smaller(y.far[j], far_x[i]);
+        near[further] = larger(z.near[0], near_xy);
+        near[further + 4] = larger(z.near[1], near_xy);
+        touched |= u8::from(near[further] <= smaller(z.far[0], far_xy)) << further;
+        touched |= u8::from(near[further + 4] <= smaller(z.far[1], far_xy)) << (further + 4);
     }
-    (0..8).fold(0, |set, i| set | u8::from(near[i] <= lengthened(far[i])) << i)
+    (touched, near)
 }
 
-/// The distance at which the ray enters a box, if it does.
-#[inline]
-fn entry(ray: &PreparedRay, bounds: &Aabb) -> f32 {
-    let corners: [&Vec3; 2] = [&bounds.min, &bounds.max];
-    (0..3).fold(ray.t_min, |near, axis| {
-        larger(distance(ray, axis, corners[ray.entry_corners[axis] & 1][axis]), near)
-    })
+/// Where a ray enters and leaves the half of a cell that it meets first along an axis, and the other. NaN for a ray along the face of a
+/// thick plane, which then decides nothing.
+struct Halves {
+    near: [f32; 2],
+    far: [f32; 2],
 }
 
-/// The distance to a plane across an axis: the formula of the slab test, monotone in the plane. NaN for a ray in the plane.
-#[inline]
-fn distance(ray: &PreparedRay, axis: usize, plane: f32) -> f32 {
-    (plane - ray.origin[axis]) * ray.reciprocal[axis]
+#[inline(always)]
+fn halves(ray: &PreparedRay, margins: &Margins, cell: &Aabb, middle: Vec3, axis: usize) -> Halves {
+    let (low, high) = (cell.min[axis], cell.max[axis]);
+    let (first, last) = if ray.entry_corners[axis] == 0 { (low, high) } else { (high, low) };
+    let (margin, reciprocal) = (margins.planes[axis], ray.reciprocal[axis]);
+    let first = first - ray.origin[axis];
+    let middle = middle[axis] - ray.origin[axis];
+    let last = last - ray.origin[axis];
+    Halves {
+        near: [(first - margin) * reciprocal, (middle - margin) * reciprocal],
+        far: [(middle + margin) * reciprocal, (last + margin) * reciprocal],
+    }
 }
