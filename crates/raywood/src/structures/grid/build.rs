@@ -43,13 +43,16 @@ impl GridPool {
         let primitives: Vec<u32> = (0..bounds.len() as u32).collect();
         let content = Content { geometry, primitives: &primitives, bounds: &bounds };
         let Cells { lattice, starts, references } = shape.grid_over(&content, SPARE_REFERENCES);
-        Ok(Self {
+        let mut grid = Self {
             primitives: bounds.len(),
             tried: 0,
             grids: vec![(lattice, 0)],
             starts,
             references,
-        })
+            occupied: Vec::new(),
+        };
+        grid.mark_occupied();
+        Ok(grid)
     }
 
     /// Gives each crowded cell of the innermost level a grid of its own, where that at least halves the mean list.
@@ -113,5 +116,6 @@ impl GridPool {
             references.extend(cells.references);
         }
         (self.starts, self.references) = (starts, references);
+        self.mark_occupied();
     }
 }

@@ -45,7 +45,9 @@ impl<G: Geometry> Content<'_, G> {
         };
 
         // Count, sum up, write.
-        let filing = Filing { content: self, lattice: &lattice, blocks: &blocks };
+        let members = parallel::map(blocks.len(), |i| self.members(&lattice, &blocks[i], i));
+        let filing =
+            Filing { content: self, lattice: &lattice, blocks: &blocks, members: &members };
         let mut counts = vec![0u32; lattice.cells()];
         filing.count(0, &mut counts);
         let mut starts = Vec::with_capacity(counts.len() + 1);
@@ -59,6 +61,26 @@ impl<G: Geometry> Content<'_, G> {
         filing.write(0, &starts, &mut references);
         Cells { lattice, starts, references }
     }
+
+    /// The cells of a block that the primitive itself reaches, one bit each, counted along x, then y, then z. All of them if it is a row,
+    /// and of more than 64 cells the first 64.
+    fn members(&self, lattice: &Lattice, block: &Block, number: usize) -> u64 {
+        if block.is_row() {
+            return u64::MAX;
+        }
+        let primitive = self.primitives[number];
+        block
+            .indices()
+            .take(64)
+            .zip(0..)
+            .filter(|&(cell, _)| self.reaches(lattice, primitive, cell))
+            .fold(0, |members, (_, bit)| members | 1 << bit)
+    }
+
+    /// Whether a primitive whose box touches a cell has a part there itself.
+    fn reaches(&self, lattice: &Lattice, primitive: u32, cell: [i32; 3]) -> bool {
+        self.geometry.overlaps(primitive, &lattice.widened_cell_bounds(cell))
+    }
 }
 
 /// The passes over all primitives. Each task owns a stretch of cells and goes over all primitives in ascending order, so that
@@ -67,6 +89,8 @@ struct Filing<'a, G> {
     content: &'a Content<'a, G>,
     lattice: &'a Lattice,
     blocks: &'a [Block],
+    /// Of each block the cells that its primitive reaches: asked once, needed twice and by several tasks.
+    members: &'a [u64],
 }
 
 impl<G: Geometry> Filing<'_, G> {
@@ -113,30 +137,26 @@ impl<G: Geometry> Filing<'_, G> {
     /// counted from 0.
     fn for_each(&self, first: usize, cells: usize, mut f: impl FnMut(usize, u32)) {
         let mine = first..first + cells;
-        for (block, &primitive) in self.blocks.iter().zip(self.content.primitives) {
+        let blocks = self.blocks.iter().zip(self.members);
+        for ((block, &members), &primitive) in blocks.zip(self.content.primitives) {
             let (low, high) = (block.first.map(i32::from), block.last.map(i32::from));
             if self.lattice.number(high) < mine.start || mine.end <= self.lattice.number(low) {
                 continue;
             }
-            for z in low[2]..=high[2] {
-                for y in low[1]..=high[1] {
-                    let row = self.lattice.number([0, y, z]);
-                    for x in low[0]..=high[0] {
-                        let cell = row + x as usize;
-                        if mine.contains(&cell)
-                            && (block.is_row() || self.reaches(primitive, [x, y, z]))
-                        {
-                            f(cell - first, primitive);
+            let is_row = block.is_row();
+            for (place, index) in block.indices().enumerate() {
+                let cell = self.lattice.number(index);
+                let is_member = || {
+                    is_row
+                        || match place {
+                            ..64 => members >> place & 1 == 1,
+                            _ => self.content.reaches(self.lattice, primitive, index),
                         }
-                    }
+                };
+                if mine.contains(&cell) && is_member() {
+                    f(cell - first, primitive);
                 }
             }
         }
-    }
-
-    /// Whether a primitive whose box touches a cell has a part there itself.
-    fn reaches(&self, primitive: u32, cell: [i32; 3]) -> bool {
-        let around = self.lattice.widened_cell_bounds(cell);
-        !self.content.geometry.clipped_bounds(primitive, &around).is_empty()
     }
 }

@@ -15,7 +15,7 @@
 //! The plain walk visits one cell at a time and would turn only one way around an edge where it passes two planes at about the
 //! same distance. Where that happens the cells on both sides are visited.
 
-use super::lattice::Lattice;
+use super::lattice::{Lattice, Planes};
 use crate::PreparedRay;
 use crate::minmax::{larger, smaller};
 use crate::traverse::slab::lengthened;
@@ -28,6 +28,9 @@ struct Axis<'a> {
     reciprocal: f32,
     /// The number of cells.
     count: i32,
+    /// The number of cells, none if the ray never leaves its layer of them.
+    crossed: i32,
+    planes: Planes,
     /// Whether the ray goes towards smaller coordinates.
     backwards: bool,
 }
@@ -40,10 +43,13 @@ impl Axis<'_> {
         (self.lattice.plane(self.axis, index) - self.origin) * self.reciprocal
     }
 
-    /// The same for the next cell; infinite if there is none.
-    #[inline]
+    /// The same for the next cell; infinite if there is none, or if the axis is not crossed.
+    #[inline(always)]
     fn next(&self, steps: i32) -> f32 {
-        if steps + 1 < self.count { self.entry(steps + 1) } else { f32::INFINITY }
+        let steps = steps + 1;
+        let index = if self.backwards { self.count - steps } else { steps };
+        let distance = (self.planes.inner(index) - self.origin) * self.reciprocal;
+        if steps < self.crossed { distance } else { f32::INFINITY }
     }
 
     /// From the lattice's own count of cells to the ray's, or back.
@@ -93,13 +99,18 @@ pub(super) fn walk(
     t_max: f32,
     mut visit: impl FnMut(usize) -> Option<f32>,
 ) -> Option<()> {
-    let axes = [0, 1, 2].map(|axis| Axis {
-        lattice,
-        axis,
-        origin: ray.origin[axis],
-        reciprocal: ray.reciprocal[axis],
-        count: lattice.resolution(axis),
-        backwards: ray.entry_corners[axis] == 1,
+    let axes = [0, 1, 2].map(|axis| {
+        let (reciprocal, count) = (ray.reciprocal[axis], lattice.resolution(axis));
+        Axis {
+            lattice,
+            axis,
+            origin: ray.origin[axis],
+            reciprocal,
+            count,
+            crossed: if reciprocal.is_finite() { count } else { 0 },
+            planes: lattice.planes(axis),
+            backwards: ray.entry_corners[axis] == 1,
+        }
     });
 
     // Find the interval inside the lattice.
@@ -133,20 +144,19 @@ pub(super) fn walk(
             axis.last_entered(ray.direction[a], distance)
         }
     });
-    let mut next = [0, 1, 2]
-        .map(|a| if axes[a].is_parallel() { f32::INFINITY } else { axes[a].next(steps[a]) });
+    let mut next = [0, 1, 2].map(|a| axes[a].next(steps[a]));
     let first = [0, 1, 2].map(|a| axes[a].first_active(steps[a], distance));
     visit_block(&axes, first, steps, &mut end, exit, &mut visit)?;
 
+    // The cell's number and what a step along each axis adds to it; steps back wrap around.
+    let mut number = lattice.number([0, 1, 2].map(|a| axes[a].turned(steps[a])));
+    let strides = lattice.strides();
+    let strides =
+        [0, 1, 2].map(|a| if axes[a].backwards { strides[a].wrapping_neg() } else { strides[a] });
     loop {
         // Enter the next cell on the axis where that happens first.
-        let a = if next[0] <= next[1] {
-            if next[0] <= next[2] { 0 } else { 2 }
-        } else if next[1] <= next[2] {
-            1
-        } else {
-            2
-        };
+        let a = usize::from(next[1] < next[0]);
+        let a = if next[2] < next[a] { 2 } else { a };
         let previous = std::mem::replace(&mut distance, next[a]);
         // Hits lie before infinity, and there is no further cell.
         if distance > end || distance == f32::INFINITY {
@@ -154,10 +164,10 @@ pub(super) fn walk(
         }
         steps[a] += 1;
         next[a] = axes[a].next(steps[a]);
+        number = number.wrapping_add(strides[a]);
 
         if distance > lengthened(previous) {
-            let cell = lattice.number([0, 1, 2].map(|a| axes[a].turned(steps[a])));
-            end = smaller(lengthened(visit(cell)?), exit);
+            end = smaller(lengthened(visit(number)?), exit);
         } else {
             // Two planes at about the same distance: on the other axes the cells just left still count.
             let first = [0, 1, 2].map(|b| match b == a {

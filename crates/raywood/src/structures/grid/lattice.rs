@@ -29,9 +29,47 @@ impl Block {
         (0..3).map(|axis| u64::from(self.last[axis] - self.first[axis]) + 1).product()
     }
 
+    /// The places of its cells, along x first, then y, then z.
+    #[inline]
+    pub(super) fn indices(&self) -> impl Iterator<Item = [i32; 3]> {
+        let (low, high) = (self.first.map(i32::from), self.last.map(i32::from));
+        let [mut x, mut y, mut z] = low;
+        std::iter::from_fn(move || {
+            if z > high[2] {
+                return None;
+            }
+            let index = [x, y, z];
+            x += 1;
+            if x > high[0] {
+                (x, y) = (low[0], y + 1);
+                if y > high[1] {
+                    (y, z) = (low[1], z + 1);
+                }
+            }
+            Some(index)
+        })
+    }
+
     /// Whether the block is a single cell or a row of cells. A connected thing touches all cells of a row it spans.
     pub(super) fn is_row(&self) -> bool {
         (0..3).filter(|&axis| self.last[axis] > self.first[axis]).count() <= 1
+    }
+}
+
+/// The planes of one axis of a lattice.
+#[derive(Clone, Copy)]
+pub(super) struct Planes {
+    min: f32,
+    max: f32,
+    cell: f32,
+}
+
+impl Planes {
+    /// Plane `index`, below the resolution.
+    #[inline(always)]
+    pub(super) fn inner(&self, index: i32) -> f32 {
+        let plane = self.min + index as f32 * self.cell;
+        if plane < self.max { plane } else { self.max }
     }
 }
 
@@ -104,8 +142,21 @@ impl Lattice {
     /// monotone; the first and the last are the box's faces.
     #[inline]
     pub(super) fn plane(&self, axis: usize, index: i32) -> f32 {
-        let (plane, max) = (self.min[axis] + index as f32 * self.cell[axis], self.max[axis]);
-        if index < self.resolution[axis] && plane < max { plane } else { max }
+        let planes = self.planes(axis);
+        if index < self.resolution[axis] { planes.inner(index) } else { planes.max }
+    }
+
+    /// The planes of an axis.
+    #[inline]
+    pub(super) fn planes(&self, axis: usize) -> Planes {
+        Planes { min: self.min[axis], max: self.max[axis], cell: self.cell[axis] }
+    }
+
+    /// What a step along each axis adds to a cell's number.
+    #[inline]
+    pub(super) fn strides(&self) -> [usize; 3] {
+        let [nx, ny, _] = self.resolution.map(|n| n as usize);
+        [1, nx, nx * ny]
     }
 
     /// About the cell of a coordinate: right but for rounding, and within range whatever the coordinate.

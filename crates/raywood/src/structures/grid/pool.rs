@@ -22,6 +22,9 @@ pub(super) struct GridPool {
     pub(super) starts: Vec<u32>,
     /// The primitives of all cells; of a cell with a grid, the grid's number.
     pub(super) references: Vec<u32>,
+    /// Which cells hold anything, one bit each. Rays pass through many empty cells, and these bits stay in the cache where the starts,
+    /// 32 times as large, do not.
+    pub(super) occupied: Vec<u64>,
 }
 
 /// What a cell holds.
@@ -45,6 +48,21 @@ impl GridPool {
             &[grid] if grid & IS_GRID != 0 => Cell::Grid((grid & !IS_GRID) as usize),
             primitives => Cell::Primitives(primitives),
         }
+    }
+
+    /// Whether the cell at a place holds anything.
+    #[inline]
+    fn is_occupied(&self, place: usize) -> bool {
+        self.occupied[place / 64] >> (place % 64) & 1 == 1
+    }
+
+    /// Notes which cells hold anything.
+    pub(super) fn mark_occupied(&mut self) {
+        let mut occupied = vec![0u64; self.starts.len().saturating_sub(1).div_ceil(64)];
+        for (place, ends) in self.starts.windows(2).enumerate() {
+            occupied[place / 64] |= u64::from(ends[0] < ends[1]) << (place % 64);
+        }
+        self.occupied = occupied;
     }
 
     /// The closest hit, the lowest primitive number among equally near ones.
@@ -108,8 +126,11 @@ impl GridPool {
         let mut t_max = t_max;
         walk(lattice, ray, t_max, |cell| {
             probe.nodes(1);
-            match self.cell(first_cell + cell) {
-                Cell::Primitives([]) => {}
+            let place = first_cell + cell;
+            if !self.is_occupied(place) {
+                return Some(t_max);
+            }
+            match self.cell(place) {
                 Cell::Primitives(primitives) => t_max = visit(primitives, probe)?,
                 Cell::Grid(inner) => t_max = self.walk_leaves(inner, ray, t_max, probe, visit)?,
             }
@@ -144,5 +165,6 @@ impl GridPool {
         size_of_val(&self.grids[..])
             + size_of_val(&self.starts[..])
             + size_of_val(&self.references[..])
+            + size_of_val(&self.occupied[..])
     }
 }
