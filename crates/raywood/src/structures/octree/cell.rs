@@ -31,21 +31,10 @@ pub(super) fn middle(cell: &Aabb) -> Vec3 {
 #[inline]
 pub(super) fn octant(cell: &Aabb, middle: Vec3, number: usize) -> Aabb {
     let Aabb { mut min, mut max } = *cell;
-    if number & 1 == 0 {
-        max.x = middle.x
-    } else {
-        min.x = middle.x
-    }
-    if number & 2 == 0 {
-        max.y = middle.y
-    } else {
-        min.y = middle.y
-    }
-    if number & 4 == 0 {
-        max.z = middle.z
-    } else {
-        min.z = middle.z
-    }
+    let lower = |axis: usize| number >> axis & 1 == 0;
+    *(if lower(0) { &mut max.x } else { &mut min.x }) = middle.x;
+    *(if lower(1) { &mut max.y } else { &mut min.y }) = middle.y;
+    *(if lower(2) { &mut max.z } else { &mut min.z }) = middle.z;
     Aabb { min, max }
 }
 

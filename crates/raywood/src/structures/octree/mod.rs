@@ -64,7 +64,8 @@ impl Node {
     }
 }
 
-/// An octree: the box around everything, divided in eight equal octants again and again while a cell holds many primitives.
+/// An octree: the box around everything, divided in eight equal octants again and again while a cell holds many primitives; in four or two
+/// as long as some axes are half as long as the longest, so that cells become near cubes.
 ///
 /// A primitive is referred to by every leaf that it overlaps. A cell stays a leaf when it holds few primitives, when the depth
 /// limit is reached, when dividing it would not pay (a ray through a cell meets a quarter of what its octants hold together), or
