@@ -116,6 +116,55 @@ fn a_million_identical_triangles_are_no_trouble() {
     }
 }
 
+/// The memory bounds of `docs/memory.md`: name, bytes a primitive, bytes besides.
+fn memory_bounds() -> Vec<(String, usize, usize)> {
+    include_str!("../../../docs/memory.md")
+        .lines()
+        .filter_map(|line| {
+            let mut columns = line.split('|').map(str::trim).skip(1);
+            let name = columns.next()?.trim_matches('`').to_owned();
+            Some((name, columns.next()?.parse().ok()?, columns.next()?.parse().ok()?))
+        })
+        .collect()
+}
+
+#[test]
+fn memory_stays_within_the_documented_bounds_whatever_the_scene() {
+    let mut rng = Rng::new(10);
+    let separate = |corners: Vec<[Vec3; 3]>| {
+        let triangles = (0..corners.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        TriangleMesh::new(corners.into_flattened(), triangles).expect("finite corners")
+    };
+    let diagonals = (0..100_000).map(|_| {
+        let aside = 0.02 * rng.in_cube();
+        [Vec3::splat(-1.0) + aside, Vec3::ONE + aside, Vec3::ONE + aside + 1e-4 * Vec3::X]
+    });
+    let diagonals = separate(diagonals.collect());
+    let mut huge_and_tiny = vec![[Vec3::splat(-1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::ONE]];
+    huge_and_tiny.extend((0..1_000_000).map(|_| {
+        let center = rng.in_cube();
+        [(); 3].map(|()| center + 1e-3 * rng.in_cube())
+    }));
+    let huge_and_tiny = separate(huge_and_tiny);
+    let identical =
+        TriangleMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::ONE], vec![[0, 1, 2]; 1_000_000]);
+    let identical = identical.expect("a mesh");
+
+    let bounds = memory_bounds();
+    for (scene, mesh) in
+        [("diagonals", diagonals), ("huge and tiny", huge_and_tiny), ("identical", identical)]
+    {
+        for &kind in StructureKind::ALL {
+            let name = kind.name();
+            let bound = bounds.iter().find(|(listed, ..)| listed == name);
+            let Some((_, each, besides)) = bound else { panic!("{name} is not in docs/memory.md") };
+            let structure = Structure::build(kind, &mesh, &BuildOptions::default());
+            let stats = structure.expect("it builds").stats();
+            assert!(stats.bytes <= each * stats.primitives + besides, "{name}, {scene}: {stats}");
+        }
+    }
+}
+
 #[test]
 fn no_ray_leaks_beside_an_edge_of_large_triangles() {
     let mut rng = Rng::new(9);
