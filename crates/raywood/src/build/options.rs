@@ -12,7 +12,9 @@ pub struct BuildOptions {
     /// Into how many bins the centroids are sorted per axis when a split is chosen, 2 to 32. More bins find slightly better
     /// splits and take longer.
     pub bins: usize,
-    /// The most primitives a leaf may hold, at least 1. Larger sets are split even if the cost model would not.
+    /// The most primitives a leaf of a bounding volume hierarchy may hold, at least 1. Larger sets are split even if the cost model would
+    /// not. Only there: each of its primitives lies in one leaf, so that any set can be split in two smaller ones. No plane or grid does that
+    /// for primitives that overlap, so structures that divide space stop where dividing no longer pays.
     pub max_leaf_size: usize,
     /// The estimated cost of visiting a node (`C_aabb`).
     pub node_cost: f32,
