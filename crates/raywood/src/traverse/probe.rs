@@ -23,6 +23,13 @@ pub trait Probe {
     fn primitives(&mut self, count: usize) {
         let _ = count;
     }
+
+    /// Some references were met in the cells of a structure that divides space: as many primitives would be tested if a mailbox did not
+    /// know some of them already.
+    #[inline]
+    fn references(&mut self, count: usize) {
+        let _ = count;
+    }
 }
 
 impl Probe for () {}

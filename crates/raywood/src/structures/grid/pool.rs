@@ -77,6 +77,7 @@ impl GridPool {
         probe.nodes(1);
         self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
             for &primitive in primitives {
+                probe.references(1);
                 if mailbox.is_new(primitive) {
                     probe.primitives(1);
                     nearest.test(geometry, &ray, primitive);
@@ -99,6 +100,7 @@ impl GridPool {
         probe.nodes(1);
         let unblocked = self.walk_leaves(0, &ray, ray.t_max, probe, &mut |primitives, probe| {
             for &primitive in primitives {
+                probe.references(1);
                 if mailbox.is_new(primitive) {
                     probe.primitives(1);
                     if blocks(geometry, &ray, primitive) {

@@ -25,6 +25,7 @@ pub(super) fn closest<G: Geometry, P: Probe>(
     let mut mailbox = Mailbox::new();
     while let Some(leaf) = walk.next_leaf(nearest.t_max(), probe) {
         for &primitive in leaf {
+            probe.references(1);
             if mailbox.is_new(primitive) {
                 probe.primitives(1);
                 nearest.test(geometry, &ray, primitive);
@@ -47,6 +48,7 @@ pub(super) fn occluded<G: Geometry, P: Probe>(
     let mut mailbox = Mailbox::new();
     while let Some(leaf) = walk.next_leaf(ray.t_max, probe) {
         for &primitive in leaf {
+            probe.references(1);
             if mailbox.is_new(primitive) {
                 probe.primitives(1);
                 if blocks(geometry, &ray, primitive) {

@@ -115,6 +115,7 @@ impl AccelerationStructure for Octree {
         let mut mailbox = Mailbox::new();
         walk(self, &ray, probe, |probe, primitives| {
             for &primitive in primitives {
+                probe.references(1);
                 if mailbox.is_new(primitive) {
                     probe.primitives(1);
                     nearest.test(geometry, &ray, primitive);
@@ -131,6 +132,7 @@ impl AccelerationStructure for Octree {
         let mut mailbox = Mailbox::new();
         walk(self, &ray, probe, |probe, primitives| {
             blocked = primitives.iter().any(|&primitive| {
+                probe.references(1);
                 mailbox.is_new(primitive) && {
                     probe.primitives(1);
                     blocks(geometry, &ray, primitive)
