@@ -3,6 +3,7 @@
 
 mod comparison;
 pub mod figures;
+pub mod lecture;
 pub mod ray_sets;
 mod rng;
 pub mod timing;
