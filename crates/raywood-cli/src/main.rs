@@ -9,7 +9,6 @@ mod parse;
 mod picture;
 mod print;
 mod progress_bar;
-#[allow(dead_code)]
 mod report;
 mod scene_source;
 mod view_args;

@@ -6,6 +6,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use raywood_testkit::html::{check_well_formed, is_self_contained};
 use raywood_testkit::image::Picture;
 use serde_json::Value;
 use support::{code, files, folder, json, raywood, run, stderr, stdout, write_triangle};
@@ -145,11 +146,39 @@ fn info_tells_what_a_scene_holds() {
 }
 
 #[test]
+fn the_lecture_is_judged_on_a_page_as_text_and_as_json() {
+    let folder = folder("lecture");
+    write_triangle(&folder);
+    let output = run(&folder, "lecture --quick --only nodes --html page.html");
+    assert_eq!((code(&output), stderr(&output).as_str()), (0, ""));
+    let text = stdout(&output);
+    assert!(text.starts_with("nodes: ") && text.ends_with("wrote page.html\n"), "{text}");
+    let page = fs::read_to_string(folder.join("page.html")).expect("a page");
+    assert_eq!(check_well_formed(&page), Ok(()));
+    assert!(is_self_contained(&page));
+    assert!(page.contains("<svg") && page.contains("2,047") && page.contains("\u{2713} holds"));
+
+    let all = json(&run(&folder, "lecture triangle.obj --quick --format json --threads 2"));
+    assert_eq!(all["scenes"], serde_json::json!(["triangle.obj"]));
+    let experiments = all["experiments"].as_array().expect("experiments");
+    assert!(experiments.len() >= 7, "{} experiments", experiments.len());
+    for experiment in experiments {
+        assert!(!experiment["tables"][0]["rows"].as_array().expect("rows").is_empty());
+        let said = stderr(&run(
+            &folder,
+            &format!("lecture --only {}x", experiment["id"].as_str().expect("an id")),
+        ));
+        assert!(said.contains(experiment["id"].as_str().expect("an id")), "{said}");
+    }
+}
+
+#[test]
 fn bad_input_is_exit_code_2_and_one_clear_line() {
     let folder = folder("bad");
     write_triangle(&folder);
     fs::write(folder.join("broken.obj"), "v 0 0 0\nf 1 2 3\n").expect("a file");
     fs::write(folder.join("empty.ply"), "").expect("a file");
+    fs::write(folder.join("points.obj"), "v 1 1 1\n").expect("a file");
     fs::write(folder.join("model.xyz"), "what is this").expect("a file");
     fs::create_dir(folder.join("directory.obj")).expect("a folder");
     fs::create_dir(folder.join("directory.png")).expect("a folder");
@@ -177,6 +206,9 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
             "there is no level 7: the bvh-sah-binned has level",
         ),
         ("info missing.glb", "missing.glb: no such file"),
+        ("lecture missing.glb", "missing.glb: no such file"),
+        ("lecture points.obj", "nothing to measure"),
+        ("lecture --html nowhere/page.html", "there is no folder nowhere"),
     ] {
         let output = run(&folder, arguments);
         let said = stderr(&output);
@@ -198,6 +230,8 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         "render --heatmap nodes --heatmap-max 0",
         "render --heatmap nodes --heatmap-max nan",
         "render --show-bounds -1",
+        "lecture --only trees",
+        "lecture --format yaml",
     ] {
         let output = run(&folder, arguments);
         let said = stderr(&output);
@@ -249,7 +283,7 @@ fn a_picture_of_nothing_is_said_to_be_one() {
 #[test]
 fn help_fits_a_screen() {
     let folder = folder("help");
-    for arguments in ["-h", "render -h", "compare -h", "info -h", "scenes -h"] {
+    for arguments in ["-h", "render -h", "compare -h", "lecture -h", "info -h", "scenes -h"] {
         let text = stdout(&run(&folder, arguments));
         let lines = text.lines().count();
         assert!((5..=24).contains(&lines), "{arguments} has {lines} lines:\n{text}");
@@ -273,8 +307,12 @@ fn a_reader_who_leaves_is_no_error() {
 fn ctrl_c_ends_it_within_a_second_and_leaves_nothing() {
     let folder = folder("interrupt");
     fs::write(folder.join("old.png"), "an old picture").expect("a file");
-    let arguments = "render builtin:whitted --samples 20000 -o old.png";
-    for delay in [100, 300, 1000] {
+    for (arguments, delay) in [
+        ("render builtin:whitted --samples 20000 -o old.png", 100),
+        ("render builtin:whitted --samples 20000 -o old.png", 300),
+        ("render builtin:whitted --samples 20000 -o old.png", 1000),
+        ("lecture --only growth --html old.png", 500),
+    ] {
         let mut child = raywood(&folder)
             .args(arguments.split_whitespace())
             .stdout(Stdio::null())

@@ -2,6 +2,7 @@
 
 mod compare;
 mod info;
+mod lecture;
 mod render;
 mod scenes;
 
@@ -15,6 +16,7 @@ pub(crate) enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Info(info::Args),
+    Lecture(lecture::Args),
     Scenes(scenes::Args),
 }
 
@@ -25,6 +27,7 @@ impl Command {
             Self::Render(args) => render::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Info(args) => info::run(args),
+            Self::Lecture(args) => lecture::run(args),
             Self::Scenes(args) => scenes::run(args),
         }
     }

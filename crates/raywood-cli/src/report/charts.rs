@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use raywood_lab::figures::{BarChart, Chart, Line, Plot, Series};
+use raywood_lab::figures::{BarChart, Chart, Line, Plot, Scale, Series};
 
 use super::axis::AxisRange;
 use super::palette::{AXIS, GRID, IDEAL, INK, SERIES, Shade};
@@ -14,12 +14,12 @@ use super::values::number;
 use crate::failure::Failure;
 
 // In half pixels of the page, because plotters rounds to whole ones.
-const WIDTH: u32 = 1200;
-const PLOT_HEIGHT: u32 = 720;
-const TEXT: u32 = 32;
+const WIDTH: u32 = 1040;
+const PLOT_HEIGHT: u32 = 680;
+const TEXT: u32 = 30;
 const LINE: u32 = 4;
 const MARK: i32 = 8;
-const BAR: i32 = 34;
+const BAR: i32 = 32;
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
@@ -194,7 +194,7 @@ fn bars_svg(bars: &BarChart) -> Result<String, String> {
     let group = per_group * BAR + BAR * 3 / 5;
     let plot_height = (group * categories.max(1) as i32) as u32;
     let values = || bars.series.iter().flat_map(|series| series.values.iter().flatten().copied());
-    let value_axis = AxisRange::around(bars.value.scale, values(), 0.22);
+    let value_axis = AxisRange::around(bars.value.scale, values().chain(root_of_bars(bars)), 0.22);
     let longest = bars.categories.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     let names_width = number_width(longest).min(WIDTH / 2) + TEXT / 2;
     draw(plot_height + 3 * TEXT + TEXT / 2 + 6, |root| {
@@ -252,6 +252,13 @@ fn bars_svg(bars: &BarChart) -> Result<String, String> {
         }
         Ok(())
     })
+}
+
+/// Where bars on a logarithmic axis begin: at a power of ten that leaves some length to the shortest.
+fn root_of_bars(bars: &BarChart) -> Option<f64> {
+    let values = bars.series.iter().flat_map(|series| series.values.iter().flatten().copied());
+    let least = values.filter(|value| *value > 0.0).min_by(f64::total_cmp)?;
+    (bars.value.scale == Scale::Logarithmic).then(|| 10f64.powf((0.7 * least).log10().floor()))
 }
 
 /// About how wide so many letters or digits are.

@@ -4,6 +4,7 @@
 
 mod axis;
 pub(crate) mod charts;
+pub(crate) mod experiments;
 pub(crate) mod page;
 mod palette;
 pub(crate) mod values;

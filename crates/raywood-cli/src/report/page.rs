@@ -56,7 +56,7 @@ pub(crate) fn table(table: &Table) -> Markup {
     html! {
         div.wide {
             table {
-                caption { (table.caption) }
+                caption { span { (table.caption) } }
                 thead {
                     tr {
                         @for (number, name) in table.columns.iter().enumerate() {
