@@ -102,7 +102,8 @@ impl<'a> Subject<'a> {
         let of_kind = |set: &RaySet| {
             let any_hit = set.kind.any_hit();
             let rays = set.sample(count.div_ceil(sets.len()));
-            rays.into_iter().map(move |ray| KindRay { ray, any_hit }).collect::<Vec<_>>()
+            let ray = |index: usize| KindRay { ray: set.rays[index], any_hit };
+            rays.into_iter().map(ray).collect::<Vec<_>>()
         };
         Ok(sets.iter().flat_map(of_kind).collect())
     }
