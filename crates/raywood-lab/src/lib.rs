@@ -1,5 +1,5 @@
 //! Experiments with acceleration structures on scenes: [sets of rays](ray_sets) as renderings have them, [fair timing](timing), the
-//! [lecture]'s claims as experiments, and the [tables and charts](figures) that come of them.
+//! [comparison](compare) of structures on the same rays, the [lecture]'s claims as experiments, and the [tables and charts](figures) that come of them.
 
 mod comparison;
 pub mod figures;

@@ -162,7 +162,7 @@ fn cell(cell: &Cell) -> Value {
     match cell {
         Cell::Text(text) => json!(text),
         Cell::Count(count) => json!(count),
-        Cell::Number(value, _) | Cell::Share(value) => json!(value),
+        Cell::Number(value, _) | Cell::Share(value) | Cell::Spread(value, ..) => json!(value),
         Cell::Nothing => Value::Null,
     }
 }
