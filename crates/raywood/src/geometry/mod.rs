@@ -14,7 +14,7 @@ pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
 pub use spheres::{Spheres, SpheresError};
 pub use surface::SurfacePoint;
-pub(crate) use triangle_block::{LANES, TriangleBlock};
+pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
 
 use crate::{Aabb, Hit, Ray, Vec3};

@@ -36,6 +36,10 @@ pub(crate) struct BlockHits {
 }
 
 impl BlockHits {
+    /// Nothing is hit.
+    pub(crate) const NONE: Self =
+        Self { hit: 0, doubtful: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
+
     /// The hit in a lane that is certainly hit.
     #[inline(always)]
     pub(crate) fn get(&self, lane: usize) -> PrimitiveHit {
@@ -89,8 +93,6 @@ impl TriangleBlock {
         lanes: u32,
         limit: f32,
     ) -> BlockHits {
-        let mut answer =
-            BlockHits { hit: 0, doubtful: 0, t: [0.0; LANES], u: [0.0; LANES], v: [0.0; LANES] };
         // Move and shear the vertices.
         let (a, b, c) =
             (self.sheared(simd, ray, 0), self.sheared(simd, ray, 1), self.sheared(simd, ray, 2));
@@ -113,19 +115,12 @@ impl TriangleBlock {
         let below = least.less(negative_error);
         let above = edge_error.less(greatest);
         let possible = lanes & !(below & above);
-        if possible == 0 {
-            return answer;
-        }
         let determinant = e0 + e1 + e2;
         let size = determinant.abs();
         let certain = edge_error.less(least) | greatest.less(negative_error);
         let trusted = simd.splat8(LEAST_DETERMINANT).less_or_equal(size)
             & size.less_or_equal(simd.splat8(GREATEST_DETERMINANT));
         let inside = possible & certain & trusted;
-        answer.doubtful = possible & !inside;
-        if inside == 0 {
-            return answer;
-        }
 
         // The weights, the depth, and how far off it may be.
         let reciprocal = simd.splat8(1.0) / determinant;
@@ -135,7 +130,6 @@ impl TriangleBlock {
             * along
             * (across * across * reciprocal.abs() + simd.splat8(1.0));
         let inexact = (simd.splat8(DISTANCE_TOLERANCE) * z.abs()).less(z_error);
-        answer.doubtful |= inside & inexact;
 
         // A trusted distance is off by less than the tolerance: twice that beyond the limit is too far, whatever rounding did.
         let t = z * simd.splat8(ray.shear[2]);
@@ -143,8 +137,12 @@ impl TriangleBlock {
         let accepted = simd.splat8(ray.t_min).less_or_equal(t)
             & t.less(simd.splat8(ray.t_max))
             & t.less_or_equal(simd.splat8(far_enough));
-        answer.hit = inside & !inexact & accepted;
-        (answer.t, answer.u, answer.v) = (t.to_array(), u.to_array(), v.to_array());
-        answer
+        BlockHits {
+            hit: inside & !inexact & accepted,
+            doubtful: possible & !(inside & !inexact),
+            t: t.to_array(),
+            u: u.to_array(),
+            v: v.to_array(),
+        }
     }
 }

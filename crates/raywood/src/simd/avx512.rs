@@ -146,6 +146,28 @@ impl Simd for Avx512 {
     }
 
     #[inline(always)]
+    fn retain(self, keys: &mut [f32], items: &mut [u32], count: usize, limit: f32) -> usize {
+        assert!(count.next_multiple_of(16) <= keys.len().min(items.len()), "a multiple of sixteen");
+        let (keys, items) = (keys.as_mut_ptr(), items.as_mut_ptr().cast::<i32>());
+        let mut kept = 0;
+        for start in (0..count).step_by(16) {
+            let here = (count - start).min(16);
+            // SAFETY: the token; sixteen places from `start` on exist. What is written begins at `kept`, which is no more than `start`, so it ends no
+            // later than what has just been read.
+            unsafe {
+                let (k, i) =
+                    (_mm512_loadu_ps(keys.add(start)), _mm512_loadu_epi32(items.add(start)));
+                let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(k, _mm512_set1_ps(limit));
+                let keep = near & (u16::MAX >> (16 - here));
+                _mm512_storeu_ps(keys.add(kept), _mm512_maskz_compress_ps(keep, k));
+                _mm512_storeu_epi32(items.add(kept), _mm512_maskz_compress_epi32(keep, i));
+                kept += keep.count_ones() as usize;
+            }
+        }
+        kept
+    }
+
+    #[inline(always)]
     fn store_sorted(
         self,
         chosen: u32,
@@ -162,11 +184,8 @@ impl Simd for Avx512 {
             let tagged = _mm512_or_si512(bits, lanes);
             let none = _mm512_set1_epi32(i32::MIN);
             let packed = _mm512_mask_compress_epi32(none, chosen as u16, tagged);
-            let sorted = match chosen.count_ones() {
-                0 | 1 => packed,
-                2..=4 => sort_four(packed),
-                _ => sort_sixteen(packed),
-            };
+            let sorted =
+                if chosen.count_ones() <= 4 { sort_four(packed) } else { sort_sixteen(packed) };
             // A permutation takes the lane from the lowest four bits.
             let items = _mm512_permutexvar_epi32(sorted, _mm512_loadu_epi32(items.as_ptr().cast()));
             let keys = _mm512_permutexvar_ps(sorted, keys.0);
@@ -181,8 +200,7 @@ impl Simd for Avx512 {
 macro_rules! exchange {
     ($v:ident, $partners:expr, $larger:expr) => {{
         let partners = $partners;
-        let (small, large) = (_mm512_min_epi32($v, partners), _mm512_max_epi32($v, partners));
-        $v = _mm512_mask_mov_epi32(small, $larger, large);
+        $v = _mm512_mask_max_epi32(_mm512_min_epi32($v, partners), $larger, $v, partners);
     }};
 }
 

@@ -135,6 +135,36 @@ fn sorting_keeps_every_chosen_pair_and_puts_large_keys_first() {
     }
 }
 
+/// Keeps the pairs with small keys.
+struct Retain(Vec<f32>, usize, f32);
+
+impl Kernel for Retain {
+    type Output = Vec<(f32, u32)>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let Self(mut keys, count, limit) = self;
+        let mut items: Vec<u32> = (0..keys.len() as u32).collect();
+        let kept = simd.retain(&mut keys, &mut items, count, limit);
+        keys.into_iter().zip(items).take(kept).collect()
+    }
+}
+
+#[test]
+fn retaining_keeps_order_and_what_lies_within_the_limit() {
+    let keys: Vec<f32> = (0..64).map(|place| ((place * 37) % 64) as f32).collect();
+    for count in 0..=64 {
+        for limit in [-1.0, 0.0, 20.0, 63.0, f32::INFINITY, f32::NAN] {
+            let pairs = keys.iter().copied().zip(0..).take(count);
+            let expected: Vec<_> = pairs.filter(|(key, _)| *key <= limit).collect();
+            for level in levels() {
+                let found = dispatch_on(level, Retain(keys.clone(), count, limit));
+                assert_eq!(found, expected, "{}, {count} up to {limit}", level.name());
+            }
+        }
+    }
+}
+
 #[test]
 fn levels_have_names() {
     for &level in SimdLevel::ALL {

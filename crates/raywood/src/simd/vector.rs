@@ -52,6 +52,18 @@ pub(crate) trait Simd: Copy {
     /// Asks for the memory of a value to be fetched soon.
     fn prefetch<T>(self, value: &T);
 
+    /// Keeps the pairs whose key is at most `limit`, in their order, and returns how many these are. Keys and items are equally many, a
+    /// multiple of sixteen at least `count`; those from `count` on count for nothing.
+    #[inline(always)]
+    fn retain(self, keys: &mut [f32], items: &mut [u32], count: usize, limit: f32) -> usize {
+        let mut kept = 0;
+        for place in 0..count {
+            (keys[kept], items[kept]) = (keys[place], items[place]);
+            kept += usize::from(keys[kept] <= limit);
+        }
+        kept
+    }
+
     /// Writes the chosen of sixteen pairs of a key and an item, the largest keys first as far as cheaply possible: the order is a
     /// heuristic, the set is exact. Up to sixteen places are overwritten. Returns how many pairs there are.
     #[inline(always)]

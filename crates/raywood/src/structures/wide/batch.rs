@@ -7,7 +7,8 @@
 use super::WideBvh;
 use super::node::Reference;
 use super::single::free;
-use super::step::{any_in_leaf, children_met, closest_in_leaf};
+use super::step::{any_blocks, children_met, leaf_hits, take_closest};
+use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
 use crate::traverse::slab::lengthened;
@@ -72,6 +73,8 @@ struct Flight {
     current: Reference,
     /// How many items are on its stack.
     top: usize,
+    /// What was found in the last leaf.
+    hits: BlockHits,
 }
 
 /// What a ray does next: the number of its list.
@@ -127,7 +130,8 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool>(
     let mut begin = |place: u8, lists: &mut Lists| {
         let (number, ray) = waiting.next()?;
         lists.add(place, tree.root);
-        Some(Flight { nearest: Nearest::new(&ray), ray, number, current: tree.root, top: 1 })
+        let nearest = Nearest::new(&ray);
+        Some(Flight { nearest, ray, number, current: tree.root, top: 1, hits: BlockHits::NONE })
     };
     let mut lists = Lists::EMPTY;
     let mut flying = Vec::with_capacity(flights);
@@ -161,39 +165,48 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool>(
             let (met, near) = children_met(simd, node, &flight.ray, limit);
             let (free_keys, free_items) = free(keys, items, flight.top);
             flight.top += simd.store_sorted(met, near, &node.children, free_keys, free_items);
-            next(simd, tree, flight, keys, items);
+            next(simd, tree, flight, items);
             lists.add(place, flight.current);
         }
 
+        // Test all leaves, and then look closer where something may be hit.
+        let mut hit_places = [0u8; RAYS];
+        let mut hit_count = 0;
+        for &place in now.of(LEAF) {
+            let Flight { ray, nearest, current, hits, .. } = &mut flying[usize::from(place)];
+            *hits = leaf_hits(simd, tree, geometry, *current, ray, nearest.t_max());
+            hit_places[hit_count % RAYS] = place;
+            hit_count += usize::from(hits.hit | hits.doubtful != 0);
+        }
+        for &place in &hit_places[..hit_count] {
+            let Flight { ray, nearest, current, hits, top, .. } = &mut flying[usize::from(place)];
+            let start = usize::from(place) * size;
+            let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
+            if ANY {
+                if any_blocks(tree, geometry, *current, hits, ray) {
+                    nearest.block();
+                    *top = 1;
+                }
+            } else {
+                let before = nearest.t_max();
+                take_closest(tree, geometry, *current, hits, ray, nearest);
+                if nearest.t_max() < before {
+                    *top = simd.retain(keys, items, *top, lengthened(nearest.t_max()));
+                }
+            }
+        }
         for &place in now.of(LEAF) {
             let flight = &mut flying[usize::from(place)];
-            let start = usize::from(place) * size;
-            let (keys, items) = (&keys[start..][..size], &items[start..][..size]);
-            let Flight { ray, nearest, current, .. } = flight;
-            if !ANY {
-                closest_in_leaf(simd, tree, geometry, *current, ray, nearest);
-                next(simd, tree, flight, keys, items);
-            } else if any_in_leaf(simd, tree, geometry, *current, ray) {
-                nearest.block();
-                *current = Reference::NOTHING;
-            } else {
-                next(simd, tree, flight, keys, items);
-            }
+            next(simd, tree, flight, &items[usize::from(place) * size..][..size]);
             lists.add(place, flight.current);
         }
     }
 }
 
-/// Takes the next node or leaf from the ray's stack, the first that begins before the closest hit, and asks for its memory.
+/// Takes the next node or leaf from the ray's stack and asks for its memory.
 #[inline(always)]
-fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight, keys: &[f32], items: &[u32]) {
-    let end = lengthened(flight.nearest.t_max());
-    loop {
-        flight.top -= 1;
-        if keys[flight.top] <= end {
-            break;
-        }
-    }
+fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight, items: &[u32]) {
+    flight.top -= 1;
     flight.current = Reference(items[flight.top]);
     let index = flight.current.index();
     if flight.current.is_leaf() {

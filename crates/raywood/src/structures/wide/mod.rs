@@ -7,6 +7,8 @@ mod collapse;
 mod node;
 mod single;
 mod step;
+#[cfg(test)]
+mod tests;
 
 use super::AccelerationStructure;
 use crate::geometry::TriangleBlock;
@@ -47,10 +49,10 @@ impl WideBvh {
         self.bounds
     }
 
-    /// How many items the stack of a traversal may hold: each node on the way leaves all its children but one, or all that are stored before it is
-    /// known how many count, and below all lies the mark of the end.
+    /// How many items the stack of a traversal has room for: of each node on the way all children but one stay behind, below them lies the mark of
+    /// the end, and sixteen are stored before it is known how many count. A multiple of sixteen.
     fn stack_size(&self) -> usize {
-        1 + (self.depth + 1) * node::WIDTH
+        (self.depth + 2) * node::WIDTH
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
-use super::step::{any_in_leaf, children_met, closest_in_leaf};
+use super::step::{any_blocks, children_met, leaf_hits, take_closest};
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
 use crate::traverse::slab::lengthened;
@@ -34,7 +34,8 @@ impl<G: Geometry, P: Probe> Kernel for Closest<'_, G, P> {
             probe.nodes(1);
             if current.is_leaf() {
                 probe.primitives(current.count());
-                closest_in_leaf(simd, tree, geometry, current, &ray, &mut nearest);
+                let hits = leaf_hits(simd, tree, geometry, current, &ray, nearest.t_max());
+                take_closest(tree, geometry, current, &hits, &ray, &mut nearest);
             } else {
                 let node = &tree.nodes[current.index()];
                 probe.boxes(WIDTH);
@@ -81,7 +82,8 @@ impl<G: Geometry, P: Probe> Kernel for Any<'_, G, P> {
             probe.nodes(1);
             if current.is_leaf() {
                 probe.primitives(current.count());
-                if any_in_leaf(simd, tree, geometry, current, &ray) {
+                let hits = leaf_hits(simd, tree, geometry, current, &ray, ray.t_max);
+                if any_blocks(tree, geometry, current, &hits, &ray) {
                     return true;
                 }
             } else {

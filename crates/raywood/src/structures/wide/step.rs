@@ -2,6 +2,7 @@
 
 use super::WideBvh;
 use super::node::{Reference, WideNode};
+use crate::geometry::BlockHits;
 use crate::simd::{Float, Simd};
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::traverse::slab::{SLACK, inside_own_bounds};
@@ -31,46 +32,58 @@ pub(super) fn children_met<S: Simd>(
     (near.less_or_equal(end), near)
 }
 
-/// The primitives of a leaf, tested for the closest hit. Returns whether it came nearer.
+/// What the vector test says of the primitives of a leaf: triangles that are certainly hit no further than `limit`, and in
+/// [`doubtful`](BlockHits::doubtful) all that must be tested one by one.
 #[inline(always)]
-pub(super) fn closest_in_leaf<S: Simd, G: Geometry>(
+pub(super) fn leaf_hits<S: Simd, G: Geometry>(
     simd: S,
     tree: &WideBvh,
     geometry: &G,
     leaf: Reference,
     ray: &PreparedRay,
-    nearest: &mut Nearest,
-) -> bool {
-    let before = nearest.t_max();
+    limit: f32,
+) -> BlockHits {
     let block = &tree.blocks[leaf.index()];
     let others = others(geometry, &block.primitives, leaf);
-    let hits = block.intersect(simd, ray, leaf.lanes() & !others, before);
+    let mut hits = block.intersect(simd, ray, leaf.lanes() & !others, limit);
+    hits.doubtful |= others;
+    hits
+}
+
+/// Takes the hits of a leaf that the vector test found.
+#[inline(always)]
+pub(super) fn take_closest<G: Geometry>(
+    tree: &WideBvh,
+    geometry: &G,
+    leaf: Reference,
+    hits: &BlockHits,
+    ray: &PreparedRay,
+    nearest: &mut Nearest,
+) {
+    let block = &tree.blocks[leaf.index()];
     for lane in lanes(hits.hit) {
         if let Some(hit) = inside_own_bounds(ray, hits.get(lane), &block.bounds(lane)) {
             nearest.offer(block.primitives[lane], hit);
         }
     }
-    for lane in lanes(hits.doubtful | others) {
+    for lane in lanes(hits.doubtful) {
         nearest.test(geometry, ray, block.primitives[lane]);
     }
-    nearest.t_max() < before
 }
 
-/// Whether any primitive of a leaf blocks the ray.
+/// Whether any of the hits of a leaf that the vector test found blocks the ray.
 #[inline(always)]
-pub(super) fn any_in_leaf<S: Simd, G: Geometry>(
-    simd: S,
+pub(super) fn any_blocks<G: Geometry>(
     tree: &WideBvh,
     geometry: &G,
     leaf: Reference,
+    hits: &BlockHits,
     ray: &PreparedRay,
 ) -> bool {
     let block = &tree.blocks[leaf.index()];
-    let others = others(geometry, &block.primitives, leaf);
-    let hits = block.intersect(simd, ray, leaf.lanes() & !others, ray.t_max);
-    lanes(hits.hit)
-        .any(|lane| inside_own_bounds(ray, hits.get(lane), &block.bounds(lane)).is_some())
-        || lanes(hits.doubtful | others).any(|lane| blocks(geometry, ray, block.primitives[lane]))
+    let inside = |lane| inside_own_bounds(ray, hits.get(lane), &block.bounds(lane)).is_some();
+    lanes(hits.hit).any(inside)
+        || lanes(hits.doubtful).any(|lane| blocks(geometry, ray, block.primitives[lane]))
 }
 
 /// The lanes of a leaf that hold primitives which are no triangles.
