@@ -12,31 +12,47 @@ use crate::stats::RayCounts;
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 const MOST_CROSSINGS: u32 = 32;
 
-/// The share of the light that reaches the point; zero in all channels if something opaque is between.
+/// What is to be done to find out how much of a light reaches a point.
+pub(crate) enum Shadow {
+    /// Any hit of the ray decides: nothing on the way can be transparent.
+    Plain(Ray),
+    /// What the ray hits may let light through: see [`visibility`].
+    Coloured(Ray),
+}
+
+impl Shadow {
+    /// The ray from the point towards the light. With `opaque`, everything hides light.
+    pub(crate) fn of(
+        prepared: &PreparedScene<'_>,
+        point: &SurfacePoint,
+        light: &Illumination,
+        opaque: bool,
+    ) -> Self {
+        let ray = ray_towards(point, light);
+        let transmissive = prepared.transmissive_bounds();
+        if opaque || !transmissive.iter().any(|bounds| may_cross(&ray, bounds)) {
+            Self::Plain(ray)
+        } else {
+            Self::Coloured(ray)
+        }
+    }
+}
+
+/// The share of the light that reaches the start of a ray towards it; zero in all channels if something opaque is between.
 ///
 /// What is transparent lets light through in a straight line, unbent. Each surface takes its Fresnel reflection and tints
 /// like a filter; the inside absorbs by its thickness. Bent light would gather in bright caustics, which Whitted's method
-/// does not follow; straight light at least does not make glass black. With `opaque`, everything is.
+/// does not follow; straight light at least does not make glass black.
 pub(crate) fn visibility(
     prepared: &PreparedScene<'_>,
-    point: &SurfacePoint,
+    mut ray: Ray,
     light: &Illumination,
-    opaque: bool,
     cutoff: f32,
     counts: &mut RayCounts,
 ) -> Rgb {
-    let mut ray = ray_towards(point, light);
-    counts.shadow += 1;
-
-    // Where nothing on the way can be transparent, any hit at all decides.
-    let nothing_transparent =
-        opaque || !prepared.transmissive_bounds().iter().any(|bounds| may_cross(&ray, bounds));
-    if nothing_transparent {
-        return if prepared.structure().occluded(&ray) { Rgb::ZERO } else { Rgb::ONE };
-    }
-
     let mut share = Rgb::ONE;
     for _ in 0..MOST_CROSSINGS {
+        counts.shadow += 1;
         let Some(hit) = prepared.structure().intersect(&ray) else { return share };
         let material = prepared.material_of(hit.primitive);
         if !material.transmissive {
@@ -50,7 +66,6 @@ pub(crate) fn visibility(
             return Rgb::ZERO;
         }
         ray = ray_towards(&surface, light);
-        counts.shadow += 1;
     }
     Rgb::ZERO
 }

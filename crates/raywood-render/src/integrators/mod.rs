@@ -4,16 +4,13 @@ mod whitted;
 
 use std::fmt;
 
-use raywood::Ray;
-use raywood_scene::Rgb;
-
 use crate::PreparedScene;
 use crate::camera_rays::CameraRays;
 use crate::lights::Lights;
 use crate::options::RenderOptions;
 use crate::progress::Progress;
 use crate::stats::RayCounts;
-use crate::tiles::{TILE_SIZE, Tile, TilePixels};
+use crate::tiles::{Tile, TilePixels};
 
 /// A method of following light.
 #[derive(Clone, Copy)]
@@ -62,28 +59,4 @@ pub(crate) struct Frame<'a> {
     pub(crate) camera: CameraRays,
     pub(crate) options: &'a RenderOptions,
     pub(crate) progress: &'a Progress,
-}
-
-/// Averages `radiance` over the primary rays of each pixel, for methods that follow rays one by one. Stops early,
-/// leaving pixels black, when the rendering is cancelled.
-fn sample_pixels(
-    frame: &Frame<'_>,
-    tile: &Tile,
-    pixels: &mut TilePixels,
-    mut radiance: impl FnMut(&Ray) -> Rgb,
-) {
-    let samples = frame.options.samples;
-    let weight = 1.0 / samples as f32;
-    for (row, y) in (tile.y..tile.y + tile.height).enumerate() {
-        for (column, x) in (tile.x..tile.x + tile.width).enumerate() {
-            let mut sum = Rgb::ZERO;
-            for ray in frame.camera.pixel_rays(x, y, samples) {
-                if frame.progress.is_cancelled() {
-                    return;
-                }
-                sum += radiance(&ray);
-            }
-            pixels[row * TILE_SIZE as usize + column] = weight * sum;
-        }
-    }
 }

@@ -99,6 +99,26 @@ impl<G: Geometry> Structure<G> {
         });
     }
 
+    /// As [`intersect_batch`](Self::intersect_batch), on this thread alone: for whoever hands out work to threads already.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn intersect_batch_serial(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "as many hits as rays");
+        self.structure.intersect_batch(&self.geometry, rays, hits);
+    }
+
+    /// As [`occluded_batch`](Self::occluded_batch), on this thread alone.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_batch_serial(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
+        self.structure.occluded_batch(&self.geometry, rays, occluded);
+    }
+
     /// The point that a ray hit, from which the next ray can be spawned. `hit` must be this structure's answer to `ray`.
     #[inline]
     pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
