@@ -1,0 +1,122 @@
+//! The loop that drives every library without batches of its own: pieces of the set go to the threads, each traced ray by ray.
+
+use std::hint::black_box;
+
+use rayon::prelude::*;
+use raywood::{Hit, Ray};
+
+use super::Tracer;
+use crate::answers::Answers;
+use crate::ray_sets::RaySet;
+
+/// How many rays a task handles: enough that handing it out costs nothing in comparison.
+pub(crate) const PIECE: usize = 1024;
+
+/// An answer to a ray, as a library gives it.
+pub(super) trait Answer: Copy + Default + Send + Sync {
+    /// What such answers say.
+    fn collect(answers: &[Self]) -> Answers;
+}
+
+impl Answer for bool {
+    fn collect(answers: &[Self]) -> Answers {
+        Answers::Any(answers.to_vec())
+    }
+}
+
+impl Answer for Option<Hit> {
+    fn collect(answers: &[Self]) -> Answers {
+        Answers::closest(answers.iter().map(|hit| hit.map(|hit| hit.t)))
+    }
+}
+
+/// A primitive and the distance at which it is hit, as much as the smaller libraries tell.
+pub(super) type Found = Option<(u32, f32)>;
+
+impl Answer for Found {
+    fn collect(answers: &[Self]) -> Answers {
+        Answers::closest(answers.iter().map(|found| found.map(|(_, t)| t)))
+    }
+}
+
+/// A set of rays traced one by one.
+pub(super) struct EachRay<R, A, F> {
+    rays: Vec<R>,
+    answers: Vec<A>,
+    trace: F,
+}
+
+impl<R, A: Answer, F: Fn(&R) -> A> EachRay<R, A, F> {
+    /// The rays converted, and what answers one of them.
+    pub(super) fn new(set: &RaySet, convert: impl Fn(&Ray) -> R, trace: F) -> Self {
+        let rays: Vec<_> = set.rays.iter().map(convert).collect();
+        Self { answers: vec![A::default(); rays.len()], rays, trace }
+    }
+
+    /// The same as one of several tracers.
+    pub(super) fn boxed<'a>(self) -> Option<Box<dyn Tracer + 'a>>
+    where
+        R: Copy + Send + Sync + 'a,
+        A: 'a,
+        F: Send + Sync + 'a,
+    {
+        Some(Box::new(self))
+    }
+}
+
+impl<R: Copy + Send + Sync, A: Answer, F: Fn(&R) -> A + Send + Sync> Tracer for EachRay<R, A, F> {
+    fn reset(&mut self) {
+        warm(&self.rays);
+        self.answers.fill(A::default());
+    }
+
+    fn trace(&mut self) {
+        let pieces = self.rays.par_chunks(PIECE).zip(self.answers.par_chunks_mut(PIECE));
+        pieces.for_each(|(rays, answers)| {
+            for (ray, answer) in rays.iter().zip(answers) {
+                *answer = (self.trace)(ray);
+            }
+        });
+    }
+
+    fn answers(&self) -> Answers {
+        A::collect(&self.answers)
+    }
+}
+
+/// A set of rays handed over whole to a library that traces batches.
+pub(super) struct Batch<'a, A, F> {
+    rays: &'a [Ray],
+    answers: Vec<A>,
+    trace: F,
+}
+
+impl<'a, A: Answer + 'a, F: Fn(&[Ray], &mut [A]) + Send + Sync + 'a> Batch<'a, A, F> {
+    /// The rays, and what answers all of them.
+    pub(super) fn boxed(set: &'a RaySet, trace: F) -> Option<Box<dyn Tracer + 'a>> {
+        let answers = vec![A::default(); set.rays.len()];
+        Some(Box::new(Self { rays: &set.rays, answers, trace }))
+    }
+}
+
+impl<A: Answer, F: Fn(&[Ray], &mut [A]) + Send + Sync> Tracer for Batch<'_, A, F> {
+    fn reset(&mut self) {
+        warm(self.rays);
+        self.answers.fill(A::default());
+    }
+
+    fn trace(&mut self) {
+        (self.trace)(self.rays, &mut self.answers);
+    }
+
+    fn answers(&self) -> Answers {
+        A::collect(&self.answers)
+    }
+}
+
+/// Reads all rays.
+fn warm<R: Copy>(rays: &[R]) {
+    for &ray in rays {
+        black_box(ray);
+    }
+}

@@ -1,0 +1,80 @@
+//! `parry3d`: a triangle mesh with its tree by binned SAH, as its users have it, and its tree by PLOC, which it recommends for casting
+//! rays.
+
+use parry3d::math::Vector;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy};
+use parry3d::query::{Ray, RayCast};
+use parry3d::shape::{CompositeShapeRef, TriMesh};
+use raywood::TriangleMesh;
+
+use super::each_ray::{Answer, EachRay};
+use super::{Built, Mode, Peer, PeerEntry};
+use crate::embree::Library;
+use crate::ray_sets::RaySet;
+
+pub(super) const ENTRY: PeerEntry = PeerEntry {
+    name: "parry3d",
+    settings: "TriMesh without flags (binned SAH), and Bvh by PLOC over the same triangles; it has no any-hit query: closest hit up to t_max",
+    build,
+};
+
+fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
+    let vertices = mesh.positions().iter().map(|p| vector(*p)).collect();
+    let mesh = TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|e| e.to_string())?;
+    let leaves = mesh.triangles().map(|triangle| triangle.local_aabb()).enumerate();
+    let ploc = Bvh::from_iter(BvhBuildStrategy::Ploc, leaves);
+    Ok(Box::new(Parry { mesh, ploc }))
+}
+
+struct Parry {
+    mesh: TriMesh,
+    ploc: Bvh,
+}
+
+/// A ray and where it ends: its own rays have no end.
+type Segment = (Ray, f32);
+
+impl Peer for Parry {
+    fn modes(&self) -> Vec<Mode<'_>> {
+        let in_mesh = |(ray, t_max): &Segment| {
+            CompositeShapeRef(&self.mesh).cast_local_ray(ray, *t_max, false)
+        };
+        let in_ploc = |(ray, t_max): &Segment| {
+            let test = |number: u32, best: f32| {
+                self.mesh.triangle(number).cast_local_ray(ray, best, false)
+            };
+            self.ploc.cast_ray(ray, *t_max, test).filter(|hit| hit.1 < *t_max)
+        };
+        vec![mode("trimesh", in_mesh), mode("ploc", in_ploc)]
+    }
+}
+
+/// The mode that finds the closest hit, which answers both questions.
+fn mode<'a>(
+    name: &'static str,
+    closest: impl Fn(&Segment) -> Option<(u32, f32)> + Copy + Send + Sync + 'a,
+) -> Mode<'a> {
+    Mode::new(name, false, move |set: &RaySet| {
+        if set.kind.any_hit() {
+            each(set, move |segment| closest(segment).is_some())
+        } else {
+            each(set, closest)
+        }
+    })
+}
+
+fn each<'a, A: Answer + 'a>(
+    set: &RaySet,
+    trace: impl Fn(&Segment) -> A + Send + Sync + 'a,
+) -> Option<Box<dyn super::Tracer + 'a>> {
+    EachRay::new(set, convert, trace).boxed()
+}
+
+fn convert(ray: &raywood::Ray) -> Segment {
+    // It takes the largest number for a ray without end.
+    (Ray::new(vector(ray.origin), vector(ray.direction)), ray.t_max.min(f32::MAX))
+}
+
+fn vector(v: raywood::Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}

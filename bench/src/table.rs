@@ -1,0 +1,220 @@
+//! The summary of a run as Markdown, made from its JSON.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use crate::ray_sets::SetKind;
+
+/// The lines between which a page holds the summary.
+pub(crate) const BEGIN: &str = "<!-- made by `raywood-bench table`: begin -->";
+pub(crate) const END: &str = "<!-- made by `raywood-bench table`: end -->";
+
+/// A line of the summary for each scene: its label, the peer, and which of the peer's modes count.
+const LINES: &[(&str, &str, Option<bool>)] = &[
+    ("Raywood, watertight", "raywood", Some(true)),
+    ("Raywood, fast", "raywood", Some(false)),
+    ("Embree, best of all modes", "embree", None),
+    ("Embree, best robust mode", "embree", Some(true)),
+    ("obvhs, best", "obvhs", None),
+    ("parry3d, best", "parry3d", None),
+    ("bvh, best", "bvh", None),
+];
+
+/// The summary: what it was measured on, and a table for each number of threads.
+///
+/// # Errors
+///
+/// The JSON is not that of a run.
+pub(crate) fn markdown(run: &Value) -> Result<String, String> {
+    let list = |key: &str| {
+        run[key]
+            .as_array()
+            .ok_or_else(|| format!("expected a list `{key}`: is this the JSON of a run?"))
+    };
+    let (scenes, measurements, ratios) = (list("scenes")?, list("measurements")?, list("ratios")?);
+    let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
+    let machine = &run["machine"];
+    let mut out = format!(
+        "Measured on {} on {}, {} cores, compiled for {}; Embree {}; {} rounds of at most {} rays. Nanoseconds per ray, smaller is \
+         better; ratios above 1 mean that Raywood is faster.\n",
+        text(&run["date"]).split('T').next().unwrap_or_default(),
+        text(&machine["cpu"]),
+        machine["cores"],
+        strings(&machine["compiled_for"]),
+        run["embree"]["version"].as_str().unwrap_or("absent"),
+        run["settings"]["rounds"],
+        run["settings"]["rays"],
+    );
+    let mut threads: Vec<_> = measurements.iter().filter_map(|m| m["threads"].as_u64()).collect();
+    threads.sort_unstable();
+    threads.dedup();
+    let sets: Vec<_> = SetKind::ALL
+        .iter()
+        .map(|set| set.name())
+        .filter(|name| measurements.iter().any(|m| m["set"] == *name))
+        .collect();
+
+    for threads in threads {
+        let plural = if threads == 1 { "" } else { "s" };
+        let _ =
+            write!(out, "\n### {threads} thread{plural}\n\n| scene | | {} |\n", sets.join(" | "));
+        let _ = writeln!(out, "| --- | --- |{}", " ---: |".repeat(sets.len()));
+        for scene in scenes {
+            let mut label = format!("{} ({})", text(&scene["name"]), count(&scene["triangles"]));
+            let mut line = |name: &str, cells: Vec<Option<String>>| {
+                if cells.iter().any(Option::is_some) {
+                    let cells: Vec<_> = cells.into_iter().map(Option::unwrap_or_default).collect();
+                    let _ = writeln!(out, "| {label} | {name} | {} |", cells.join(" | "));
+                    label.clear();
+                }
+            };
+            let of = |value: &Value, set: &str| {
+                value["scene"] == scene["name"]
+                    && value["set"] == set
+                    && value["threads"] == threads
+            };
+            for (name, peer, watertight) in LINES {
+                let best = |set: &&str| {
+                    let measurement = measurements.iter().find(|m| of(m, set))?;
+                    let modes = measurement["modes"].as_array()?.iter();
+                    modes
+                        .filter(|mode| mode["peer"] == *peer)
+                        .filter(|mode| watertight.is_none_or(|w| mode["watertight"] == w))
+                        .filter_map(|mode| mode["ns_per_ray"].as_f64())
+                        .min_by(f64::total_cmp)
+                        .map(nanoseconds)
+                };
+                line(name, sets.iter().map(best).collect());
+            }
+            for (name, against) in [
+                ("**Embree robust / Raywood watertight**", "robust"),
+                ("**Embree best / Raywood**", "best"),
+            ] {
+                let ratio = |set: &&str| {
+                    let chosen = ratios.iter().find(|r| of(r, set) && r["against"] == against)?;
+                    Some(format!("**{:.2}**", chosen["ratio"].as_f64()?))
+                };
+                line(name, sets.iter().map(ratio).collect());
+            }
+        }
+    }
+    if ratios.iter().any(|ratio| ratio["unequal"] == true) {
+        out.push_str(
+            "\nThere is no fast mode of Raywood yet: where \"Embree best\" is not a robust mode, its time is held against Raywood's \
+             watertight one.\n",
+        );
+    }
+    Ok(out)
+}
+
+/// The page with what stands between [`BEGIN`] and [`END`] replaced.
+///
+/// # Errors
+///
+/// The page does not have these lines, in this order.
+pub(crate) fn replace(page: &str, summary: &str) -> Result<String, String> {
+    let parts = page
+        .split_once(BEGIN)
+        .and_then(|(before, rest)| rest.split_once(END).map(|(_, after)| (before, after)));
+    let (before, after) =
+        parts.ok_or_else(|| format!("expected the lines `{BEGIN}` and `{END}`"))?;
+    Ok(format!("{before}{BEGIN}\n\n{summary}\n{END}{after}"))
+}
+
+/// A time with three digits or one decimal.
+fn nanoseconds(ns: f64) -> String {
+    if ns < 99.95 { format!("{ns:.1}") } else { format!("{ns:.0}") }
+}
+
+/// A number of triangles, short.
+fn count(value: &Value) -> String {
+    match value.as_u64() {
+        Some(n) if n >= 999_500 => format!("{:.1}M", n as f64 / 1e6),
+        Some(n) if n >= 1000 => format!("{:.0}k", n as f64 / 1e3),
+        Some(n) => n.to_string(),
+        None => "?".to_owned(),
+    }
+}
+
+fn strings(value: &Value) -> String {
+    let items = value.as_array().map(Vec::as_slice).unwrap_or_default();
+    items.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use serde_json::json;
+
+    use super::*;
+
+    fn run() -> Value {
+        json!({
+            "date": "2026-11-23T19:00:00Z",
+            "machine": { "cpu": "A CPU", "cores": 2, "compiled_for": ["sse2"] },
+            "embree": { "version": "4.4.0" },
+            "settings": { "rounds": 7, "rays": 1_024_000 },
+            "scenes": [{ "name": "hall", "triangles": 1_000_000 }],
+            "measurements": [{
+                "scene": "hall", "set": "diffuse", "threads": 1,
+                "modes": [
+                    { "peer": "raywood", "mode": "batch", "watertight": true, "ns_per_ray": 123.4 },
+                    { "peer": "raywood", "mode": "single", "watertight": true, "ns_per_ray": 99.0 },
+                    { "peer": "embree", "mode": "1", "watertight": false, "wrong": "all" },
+                    { "peer": "embree", "mode": "1 robust", "watertight": true, "ns_per_ray": 49.5 },
+                ],
+            }],
+            "ratios": [
+                { "scene": "hall", "set": "diffuse", "threads": 1, "against": "robust", "ratio": 0.5,
+                  "unequal": false },
+            ],
+        })
+    }
+
+    #[test]
+    fn the_summary_has_the_best_of_each() {
+        let summary = markdown(&run()).expect("a run");
+        let lines: Vec<_> = summary.lines().skip(2).collect();
+        assert_eq!(
+            lines,
+            [
+                "### 1 thread",
+                "",
+                "| scene | | diffuse |",
+                "| --- | --- | ---: |",
+                "| hall (1.0M) | Raywood, watertight | 99.0 |",
+                "|  | Embree, best of all modes | 49.5 |",
+                "|  | Embree, best robust mode | 49.5 |",
+                "|  | **Embree robust / Raywood watertight** | **0.50** |",
+            ]
+        );
+        assert!(markdown(&json!({ "scenes": [] })).is_err());
+    }
+
+    #[test]
+    fn pages_keep_what_is_around_the_summary() {
+        let page = format!("a\n{BEGIN}\nold\n{END}\nb\n");
+        assert_eq!(
+            replace(&page, "new\n").as_deref(),
+            Ok(&*format!("a\n{BEGIN}\n\nnew\n\n{END}\nb\n"))
+        );
+        assert!(replace("a\nb\n", "new").is_err());
+    }
+
+    /// The page's table is the one that its recorded run makes.
+    #[test]
+    fn the_readme_shows_a_recorded_run() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let page = std::fs::read_to_string(folder.join("README.md")).expect("a README");
+        let name = page
+            .lines()
+            .find_map(|line| line.strip_prefix("Recorded run: [`")?.split('`').next())
+            .expect("the README names a recorded run");
+        let json = std::fs::read_to_string(folder.join(name)).expect("the recorded run");
+        let run = serde_json::from_str(&json).expect("JSON");
+        let expected = replace(&page, &markdown(&run).expect("a run")).expect("marks");
+        assert!(page == expected, "run `raywood-bench table bench/{name} --into bench/README.md`");
+    }
+}
