@@ -76,6 +76,8 @@ const SHUFFLE_SEED: u64 = 2;
 pub(crate) struct Viewpoint {
     pub(crate) camera: Pinhole,
     pub(crate) light: Vec3,
+    /// The scene's diagonal, by which offsets and lengths of rays go.
+    pub(crate) diagonal: f32,
 }
 
 /// A set of each of the kinds. Secondary rays come in the order of the primary rays whose hits they start from; they are fewer where the eye
@@ -90,7 +92,7 @@ pub(crate) fn ray_sets(
         tiled_pixels(size).map(|pixel| viewpoint.camera.ray(pixel, size)).collect();
     let hits = reference.closest(&primary);
     let mesh = reference.mesh();
-    let diagonal = mesh.total_bounds().diagonal();
+    let diagonal = viewpoint.diagonal;
     let starts: Vec<Start> = primary
         .iter()
         .zip(&hits)
@@ -172,6 +174,8 @@ fn shuffled(mut rays: Vec<Ray>) -> Vec<Ray> {
 mod tests {
     use super::*;
 
+    const DIAGONAL: f32 = 12.0;
+
     /// A floor at y = 0 with a wall at x = 1, seen from above.
     fn sets() -> Vec<RaySet> {
         let positions = [
@@ -188,8 +192,11 @@ mod tests {
         let mesh = TriangleMesh::new(positions.to_vec(), triangles).expect("a mesh");
         let reference = Reference::build(&mesh).expect("a tree");
         let camera = Pinhole::new(Vec3::new(-1.0, 5.0, 0.5), Vec3::new(-1.5, 0.0, 0.0), 2.0);
-        let viewpoint =
-            Viewpoint { camera: camera.expect("a camera"), light: Vec3::new(3.0, 2.0, 0.0) };
+        let viewpoint = Viewpoint {
+            camera: camera.expect("a camera"),
+            light: Vec3::new(3.0, 2.0, 0.0),
+            diagonal: DIAGONAL,
+        };
         let size = PictureSize { width: 32, height: 32 };
         ray_sets(SetKind::ALL, &reference, &viewpoint, size)
     }
@@ -206,17 +213,16 @@ mod tests {
         for set in [mirror, ao, diffuse, shuffled] {
             assert_eq!(set.rays.len(), seen);
         }
-        let diagonal = (64f32 + 64.0 + 64.0).sqrt();
         for ((shadow, ao), diffuse) in shadow.rays.iter().zip(&ao.rays).zip(&diffuse.rays) {
             // Over the floor or before the wall, on the eye's side.
             let o = shadow.origin;
-            let (height, distance) = (o.y / (OFFSET * diagonal), (1.0 - o.x) / (OFFSET * diagonal));
+            let (height, distance) = (o.y / (OFFSET * DIAGONAL), (1.0 - o.x) / (OFFSET * DIAGONAL));
             assert!((height - 1.0).abs() < 0.1 || (distance - 1.0).abs() < 0.1, "{o:?}");
             let end = shadow.at(shadow.t_max) - Vec3::new(3.0, 2.0, 0.0);
             assert!(end.length() < 1e-5, "{end:?}");
             assert!((diffuse.direction.length() - 1.0).abs() < 1e-6);
             assert_eq!((ao.origin, ao.direction), (diffuse.origin, diffuse.direction));
-            assert_eq!((ao.t_max, diffuse.t_max), (0.1 * diagonal, f32::INFINITY));
+            assert_eq!((ao.t_max, diffuse.t_max), (0.1 * DIAGONAL, f32::INFINITY));
         }
     }
 

@@ -22,6 +22,9 @@ pub(crate) struct SceneEntry {
     /// The tangent of half the vertical angle of view.
     tan: f32,
     light: [f32; 3],
+    /// What counts as the diagonal where a sea or a lawn reaches to the horizon, else that of the box around all triangles. Offsets and lengths
+    /// of rays follow from it: by the hall's sea they would start 11 cm off the wall.
+    diagonal: Option<f32>,
 }
 
 /// Where triangles come from.
@@ -44,6 +47,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         target: [0.0, 4.4, 0.1],
         tan: 0.6,
         light: [0.5, 12.5, 0.3],
+        diagonal: None,
     },
     // The whole scan before nothing, from the front.
     SceneEntry {
@@ -54,6 +58,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         target: [-0.5, 12.0, 0.0],
         tan: 0.16,
         light: [20.0, 40.0, 30.0],
+        diagonal: None,
     },
     // Down the nave, as the scene's own camera sees it; the light hangs from the vault. Its few spheres are left out.
     SceneEntry {
@@ -64,6 +69,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         target: [0.12, 2.45, -6.0],
         tan: 0.4877,
         light: [0.5, 7.5, -3.0],
+        diagonal: Some(45.0),
     },
     // The island from a hill, much as the scene's own camera sees it; the light is a sun that is not too far away.
     SceneEntry {
@@ -74,6 +80,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         target: [0.0, 560.0, 0.0],
         tan: 0.2773,
         light: [20_000.0, 15_000.0, 9_000.0],
+        diagonal: Some(20_000.0),
     },
     // The room from its corner, over the worktop, with the light under the ceiling.
     SceneEntry {
@@ -84,6 +91,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         target: [-0.26, 1.21, -0.05],
         tan: 0.4663,
         light: [0.0, 2.2, 1.0],
+        diagonal: None,
     },
 ];
 
@@ -106,17 +114,20 @@ pub(crate) struct View {
     pub(crate) target: Vec3,
     pub(crate) tan: f32,
     pub(crate) light: Vec3,
+    /// What counts as the scene's diagonal, if not that of its box.
+    pub(crate) diagonal: Option<f32>,
 }
 
 impl View {
-    /// The same, ready to make rays.
+    /// The same, ready to make rays in a mesh.
     ///
     /// # Errors
     ///
     /// There is no such camera.
-    pub(crate) fn viewpoint(&self) -> Result<Viewpoint, String> {
+    pub(crate) fn viewpoint(&self, mesh: &TriangleMesh) -> Result<Viewpoint, String> {
         let camera = Pinhole::new(self.eye, self.target, self.tan)?;
-        Ok(Viewpoint { camera, light: self.light })
+        let diagonal = self.diagonal.unwrap_or_else(|| mesh.total_bounds().diagonal());
+        Ok(Viewpoint { camera, light: self.light, diagonal })
     }
 }
 
@@ -145,7 +156,7 @@ impl SceneEntry {
             name: self.name.to_owned(),
             source,
             mesh: scaled(scene.mesh.triangles, self.scale)?,
-            view: View { eye, target, tan: self.tan, light },
+            view: View { eye, target, tan: self.tan, light, diagonal: self.diagonal },
         })
     }
 }
@@ -195,8 +206,9 @@ mod tests {
         for (number, scene) in SCENES.iter().enumerate() {
             assert!(!SCENES[..number].iter().any(|other| other.name == scene.name));
             let [eye, target, light] = [scene.eye, scene.target, scene.light].map(Vec3::from);
-            let view = View { eye, target, tan: scene.tan, light };
-            assert!(view.viewpoint().is_ok(), "{}", scene.name);
+            let view = View { eye, target, tan: scene.tan, light, diagonal: scene.diagonal };
+            let viewpoint = view.viewpoint(&TriangleMesh::default()).expect(scene.name);
+            assert_eq!(viewpoint.diagonal, scene.diagonal.unwrap_or(0.0), "{}", scene.name);
         }
     }
 

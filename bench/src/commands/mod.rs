@@ -10,7 +10,7 @@ use crate::failure::Failure;
 /// What to do.
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    Trace(trace::Args),
+    Trace(Box<trace::Args>),
     Table(table::Args),
 }
 

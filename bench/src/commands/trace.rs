@@ -11,7 +11,7 @@ use crate::embree::Library;
 use crate::failure::Failure;
 use crate::machine::{machine, now};
 use crate::measure::{Contestant, Measurement, Outcome, Row, measure};
-use crate::peers::{PEERS, Peer, PeerEntry};
+use crate::peers::{Built, PEERS, PeerEntry};
 use crate::pixel_order::PictureSize;
 use crate::ratios::ratios;
 use crate::ray_sets::{SetKind, ray_sets};
@@ -165,7 +165,7 @@ fn loaders(args: &Args) -> Vec<Box<dyn Fn() -> Result<BenchScene, Skip> + '_>> {
     if let (Some(path), Some(eye), Some(target), Some(tan), Some(light)) =
         (&args.triangles, args.eye, args.target, args.tan, args.light)
     {
-        let view = View { eye, target, tan, light };
+        let view = View { eye, target, tan, light, diagonal: None };
         return vec![Box::new(move || load_model(path, view).map_err(Skip::Bad))];
     }
     let from_environment = || std::env::var_os("RAYWOOD_TEST_SCENES").map(PathBuf::from);
@@ -191,7 +191,7 @@ fn run_scene(
 ) -> Result<(Value, Vec<Measurement>), Failure> {
     let BenchScene { name, source, mesh, view } = scene;
     let in_scene = |why: &dyn std::fmt::Display| format!("{name}: {why}");
-    let viewpoint = view.viewpoint().map_err(|why| Failure::BadInput(in_scene(&why)))?;
+    let viewpoint = view.viewpoint(mesh).map_err(|why| Failure::BadInput(in_scene(&why)))?;
     let size = PictureSize::with_about(args.rays);
     let kinds = if args.sets.is_empty() { SetKind::ALL } else { &args.sets };
     let triangles = mesh.triangles().len();
@@ -200,7 +200,7 @@ fn run_scene(
     let reference = Reference::build(mesh).map_err(|error| Failure::BadInput(in_scene(&error)))?;
     let sets = ray_sets(kinds, &reference, &viewpoint, size);
     let mut builds = Vec::new();
-    let mut built: Vec<(&PeerEntry, Result<Box<dyn Peer + '_>, String>)> = Vec::new();
+    let mut built: Vec<(&PeerEntry, Built<'_>)> = Vec::new();
     for peer in peers {
         let (time, trees) = seconds(|| (peer.build)(mesh, library));
         match &trees {
@@ -246,7 +246,7 @@ fn run_scene(
         "name": name,
         "source": source,
         "triangles": triangles,
-        "diagonal": mesh.total_bounds().diagonal(),
+        "diagonal": viewpoint.diagonal,
         "eye": view.eye.to_array(),
         "target": view.target.to_array(),
         "tan": view.tan,

@@ -3,6 +3,7 @@
 #![allow(unsafe_code)]
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
+use std::mem::offset_of;
 use std::path::Path;
 use std::ptr::{NonNull, null, null_mut};
 
@@ -413,8 +414,12 @@ impl Record for Packet {
     }
 }
 
+// Where the headers put things.
 const _: () = assert!(size_of::<Single>() == 96 && size_of::<Lanes>() == 21 * 64);
-const _: () = assert!(std::mem::offset_of!(Packet, valid) % 64 == 0);
+const _: () = assert!(offset_of!(Single, normal) == 48 && offset_of!(Single, geometry) == 72);
+const _: () = assert!(offset_of!(Lanes, tfar) == 8 * 64 && offset_of!(Lanes, normal) == 12 * 64);
+const _: () = assert!(offset_of!(Lanes, geometry) == 18 * 64);
+const _: () = assert!(offset_of!(Packet, valid).is_multiple_of(64));
 
 /// Calls `f` with denormal numbers taken for zero and made zero, as Embree's manual asks of every thread that traces.
 fn with_flushed_denormals(f: impl FnOnce()) {
@@ -435,4 +440,41 @@ fn with_flushed_denormals(f: impl FnOnce()) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     f();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn libraries_that_are_not_there_are_errors() {
+        let said = Library::load(Path::new("no/such/libembree4.so"), "").err().expect("no library");
+        assert!(said.starts_with("no/such/libembree4.so: "), "{said}");
+    }
+
+    #[test]
+    fn packets_hold_rays_in_lanes() {
+        let ray = |x: f32| Ray::new([x, 2.0, 3.0], [0.0, 1.0, x]).with_interval(0.5, 10.0 + x);
+        let rays: Vec<_> = (0..5).map(|i| ray(i as f32)).collect();
+        let mut packet = Packet::default();
+        packet.pack(&[ray(7.0); LANES]);
+        packet.pack(&rays);
+        assert_eq!(packet.valid[3..7], [-1, -1, 0, 0]);
+        let lanes = &packet.lanes;
+        assert_eq!((lanes.origin[0][4], lanes.direction[2][4]), (4.0, 4.0));
+        assert_eq!((lanes.tnear[4], lanes.tfar[4]), (0.5, 14.0));
+        assert_eq!(packet.lane(4), Lane { t: None, occluded: false });
+        packet.lanes.geometry[4] = 0;
+        packet.lanes.tfar[3] = f32::NEG_INFINITY;
+        assert_eq!(packet.lane(4), Lane { t: Some(14.0), occluded: false });
+        assert_eq!(packet.lane(3), Lane { t: None, occluded: true });
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn denormals_are_back_afterwards() {
+        let tiny = || std::hint::black_box(f32::MIN_POSITIVE) / std::hint::black_box(2.0);
+        with_flushed_denormals(|| ());
+        assert!(tiny() > 0.0);
+    }
 }

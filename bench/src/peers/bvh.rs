@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use bvh::aabb::{Aabb, Bounded, IntersectsAabb};
 use bvh::bounding_hierarchy::{BHShape, BoundingHierarchy};
-use bvh::bvh::Bvh;
+use bvh::bvh::{Bvh, BvhNode};
 use bvh::ray::Ray;
 use nalgebra::{Point3, Vector3};
 use raywood::{TriangleMesh, Vec3};
@@ -33,7 +33,28 @@ fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
     };
     let mut shapes: Vec<_> = (0..mesh.triangles().len() as u32).map(shape).collect();
     let tree = Bvh::build_par(&mut shapes);
+    let depth = depth(&tree);
+    if depth > DEEPEST {
+        return Err(format!("its tree is {depth} deep, its iterators panic beyond {DEEPEST}"));
+    }
     Ok(Box::new(Tree { tree, shapes }))
+}
+
+/// The size of its iterators' stack.
+const DEEPEST: usize = 32;
+
+/// How many interior nodes lie above the deepest leaf.
+fn depth(tree: &Bvh<f32, 3>) -> usize {
+    let (mut deepest, mut stack) = (0, vec![(0, 0)]);
+    while let Some((node, depth)) = stack.pop() {
+        match tree.nodes.get(node) {
+            Some(&BvhNode::Node { child_l_index, child_r_index, .. }) => {
+                stack.extend([(child_l_index, depth + 1), (child_r_index, depth + 1)]);
+            }
+            _ => deepest = deepest.max(depth),
+        }
+    }
+    deepest
 }
 
 struct Tree {
