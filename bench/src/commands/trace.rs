@@ -1,5 +1,6 @@
 //! `raywood-bench trace`: all kernels trace the same sets of rays.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -101,8 +102,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let chosen = |entry: &&PeerEntry| args.peers.is_empty() || args.peers.contains(&entry.name);
     let peers: Vec<_> = PEERS.iter().filter(chosen).collect();
     if let Some(file) = &args.json {
-        // Now rather than after long work.
-        std::fs::write(file, "").map_err(|error| {
+        // Now rather than after long work, and without harm to what is there.
+        File::options().append(true).create(true).open(file).map_err(|error| {
             Failure::BadInput(format!("{}: cannot be written: {error}", file.display()))
         })?;
     }

@@ -2,6 +2,7 @@
 //! `rtcore_*.h`, as release builds have them: one level of instances.
 #![allow(unsafe_code)]
 
+use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 use std::mem::offset_of;
 use std::path::Path;
@@ -73,7 +74,13 @@ impl Library {
         let complain = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let config = CString::new(config).map_err(|error| complain(&error))?;
         // SAFETY: the user named the library as Embree's, whose initialisers have no preconditions.
-        let code = unsafe { libloading::Library::new(path) }.map_err(|error| complain(&error))?;
+        let code = unsafe { libloading::Library::new(path) }.map_err(|error| {
+            // What the system says comes second.
+            match error.source() {
+                Some(cause) => complain(cause),
+                None => complain(&error),
+            }
+        })?;
         macro_rules! function {
             ($name:literal) => {
                 // SAFETY: the type is that of the function of this name in Embree 4's headers.
