@@ -20,7 +20,11 @@ pub(crate) fn text(measurement: &Measurement) -> String {
         let name = format!("{} {}", row.peer, row.mode);
         let _ = match (&row.outcome, measurement.ns_per_ray(row)) {
             (Outcome::Timed { timing, .. }, Some(ns)) => {
-                writeln!(text, "  {name:<28} {ns:>8.1} ±{:>3.0}%", 100.0 * timing.spread())
+                let spread = match timing.rounds() {
+                    1 => "once".to_owned(),
+                    _ => format!("±{:>3.0}%", 100.0 * timing.spread()),
+                };
+                writeln!(text, "  {name:<28} {ns:>8.1} {spread}")
             }
             (Outcome::Wrong(how), _) => writeln!(text, "  {name:<28}    wrong: {how}"),
             (Outcome::Absent(why), _) => writeln!(text, "  {name:<28} {why}"),
