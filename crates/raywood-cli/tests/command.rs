@@ -201,10 +201,7 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         ("render triangle.obj --depth 1000", "depth"),
         ("render triangle.obj --eye 0,0,0 --target 0,0,0", "eye"),
         ("render triangle.obj --camera 3", "none"),
-        (
-            "render triangle.obj --show-bounds 7",
-            "there is no level 7: the bvh-sah-binned has level",
-        ),
+        ("render triangle.obj --show-bounds 7", "there is no level 7: the bvh-wide has level"),
         ("info missing.glb", "missing.glb: no such file"),
         ("lecture missing.glb", "missing.glb: no such file"),
         ("lecture points.obj", "nothing to measure"),

@@ -159,7 +159,7 @@ fn a_scene_without_surfaces_has_no_levels() {
     let answer =
         bounds_overlay(&prepared, &still_life_camera(), &options(8, 8), 0, &Progress::new());
     let message = answer.expect_err("nothing").to_string();
-    assert_eq!(message, "there is no level 0: the bvh-sah-binned is empty");
+    assert_eq!(message, "there is no level 0: the bvh-wide is empty");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use raywood::Counts;
 use raywood_lab::figures::{Cell, Table};
-use raywood_lab::{Comparison, RaySetSummary, StructureReport, Traces};
+use raywood_lab::{Comparison, RaySetSummary, StructureReport, Timing, Traces};
 
 use crate::print::thousands;
 
@@ -16,7 +16,7 @@ pub(super) fn tables(comparison: &Comparison) -> Vec<Table> {
     vec![
         structures(comparison),
         per_kind("Million rays a second", comparison, |traces| {
-            Cell::with_spread(traces.million_rays_per_second(), traces.timing.spread())
+            measured(traces.million_rays_per_second(), &traces.timing)
         }),
         per_ray("Nodes or cells entered by a ray", |counts| counts.nodes),
         per_ray("Boxes tested by a ray", |counts| counts.boxes),
@@ -36,8 +36,8 @@ pub(super) fn ray_sets(comparison: &Comparison) -> Vec<String> {
 /// What must be said of the numbers.
 pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
     let mut notes = vec![
-        "Every answer of every structure equals those of the others, to the bit.".to_owned(),
-        "Times are medians of rounds taken in turns; ± is half the distance between the quartiles."
+        "Every answer of every structure equals the reference's for the same ray, to the bit.".to_owned(),
+        "Times are medians of rounds in which the structures take turns, one kind of rays after the other; ± is half the distance between the quartiles."
             .to_owned(),
     ];
     for structure in &comparison.structures {
@@ -55,13 +55,13 @@ pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
 }
 
 fn structures(comparison: &Comparison) -> Table {
-    let columns = ["structure", "build s", "MB", "nodes", "depth", "refs/prim", "Q"];
+    let columns = ["structure", "build ms", "MB", "nodes", "depth", "refs/prim", "Q"];
     let mut table = Table::new("Structures", &columns);
     for StructureReport { kind, build, stats, .. } in &comparison.structures {
         table.rows.push(vec![
             Cell::text(kind.name()),
-            Cell::with_spread(build.median(), build.spread()),
-            Cell::Number(stats.bytes as f64 / 1e6, 1),
+            measured(1e3 * build.median(), build),
+            Cell::significant(stats.bytes as f64 / 1e6),
             Cell::count(stats.nodes),
             Cell::count(stats.depth),
             Cell::Number(stats.duplication(), 2),
@@ -69,6 +69,14 @@ fn structures(comparison: &Comparison) -> Table {
         ]);
     }
     table
+}
+
+/// A number that follows from a time; one that was measured once has no spread.
+fn measured(value: f64, timing: &Timing) -> Cell {
+    match timing.rounds() {
+        0 | 1 => Cell::significant(value),
+        _ => Cell::with_spread(value, timing.spread()),
+    }
 }
 
 /// A table of one number for each structure and kind of rays.

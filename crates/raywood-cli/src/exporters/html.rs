@@ -57,6 +57,11 @@ pub(crate) fn write(compared: &Compared<'_>, heat_maps: &[HeatMaps]) -> Result<S
         section {
             h2 { "Structures" }
             @for table in structures { (page::table(table)) }
+            p {
+                "Q expects rays that pass through the whole box, evenly spread, and hit nothing. It cannot know where real rays go: a grid with all \
+                 detail in a few cells looks good to it."
+                @if has_brute_force(comparison) { " Brute force, whose bars would hide all others, is in the tables only." }
+            }
             div.charts { @for chart in structure_charts(comparison) { (charts::figure(&chart)?) } }
         }
         section {
@@ -76,38 +81,26 @@ pub(crate) fn write(compared: &Compared<'_>, heat_maps: &[HeatMaps]) -> Result<S
     Ok(page::html(&format!("Structures compared: {scene}"), STYLE, &body))
 }
 
+fn has_brute_force(comparison: &Comparison) -> bool {
+    comparison.structures.iter().any(|structure| structure.kind == StructureKind::BruteForce)
+}
+
 /// The structures that bars can show beside each other: brute force, thousands of times slower, would leave nothing of the others.
 fn comparable(comparison: &Comparison) -> impl Iterator<Item = &StructureReport> {
     comparison.structures.iter().filter(|structure| structure.kind != StructureKind::BruteForce)
 }
 
-/// Bars of one or several numbers for each structure.
-fn bars(comparison: &Comparison, title: &str, axis: &str, decimals: usize) -> BarChart {
-    let names = comparable(comparison).map(|structure| structure.kind.name().to_owned());
-    BarChart {
-        title: title.to_owned(),
-        value: Axis::linear(axis),
-        decimals,
-        categories: names.collect(),
-        series: Vec::new(),
-    }
-}
-
 fn structure_charts(comparison: &Comparison) -> Vec<Chart> {
-    let chart = |title, axis: &str, decimals, value: fn(&StructureReport) -> f64| {
+    let chart = |title, axis: &str, value: fn(&StructureReport) -> f64| {
         let values = comparable(comparison).map(|structure| Some(value(structure))).collect();
-        let series = vec![BarSeries { name: axis.to_owned(), values }];
-        Chart::Bars(BarChart { series, ..bars(comparison, title, axis, decimals) })
+        with_bars(comparison, title, axis, vec![BarSeries { name: axis.to_owned(), values }])
     };
     vec![
-        chart("Time to build", "seconds", 3, |structure| structure.build.median()),
-        chart("Memory", "MB", 1, |structure| structure.stats.bytes as f64 / 1e6),
-        chart(
-            "Q, the cost of a ray that hits nothing",
-            "node visits and primitive tests",
-            1,
-            |s| s.stats.q,
-        ),
+        chart("Time to build", "milliseconds", |structure| 1e3 * structure.build.median()),
+        chart("Memory", "MB", |structure| structure.stats.bytes as f64 / 1e6),
+        chart("Q, the cost of a ray that hits nothing", "node visits and primitive tests", |s| {
+            s.stats.q
+        }),
     ]
 }
 
@@ -119,8 +112,22 @@ fn speeds(comparison: &Comparison) -> Chart {
             .map(|traces| traces.filter(|t| t.rays > 0).map(Traces::million_rays_per_second))
             .collect(),
     });
-    let chart = bars(comparison, "Speed: longer is faster", "million rays a second", 2);
-    Chart::Bars(BarChart { series: series.collect(), ..chart })
+    let series = series.collect();
+    with_bars(comparison, "Speed: longer is faster", "million rays a second", series)
+}
+
+/// Bars for each structure, with as many decimals as show two digits of the smallest.
+fn with_bars(comparison: &Comparison, title: &str, axis: &str, series: Vec<BarSeries>) -> Chart {
+    let names = comparable(comparison).map(|structure| structure.kind.name().to_owned());
+    let values = series.iter().flat_map(|series| series.values.iter().flatten().copied());
+    let smallest = values.filter(|value| *value > 0.0).reduce(f64::min).unwrap_or(1.0);
+    Chart::Bars(BarChart {
+        title: title.to_owned(),
+        value: Axis::linear(axis),
+        decimals: (1 - smallest.log10().floor() as i32).clamp(0, 6) as usize,
+        categories: names.collect(),
+        series,
+    })
 }
 
 /// Where the references lie, of each structure: the histogram of its depth.

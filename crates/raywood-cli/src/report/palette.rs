@@ -27,7 +27,7 @@ impl Shade {
 }
 
 /// The colours of series, in order; after the last comes the first again.
-pub(super) const SERIES: [Shade; 8] = [
+pub(super) const SERIES: [Shade; 10] = [
     Shade { light: 0x0067A5, dark: 0x56B4E9 },
     Shade { light: 0xC04A00, dark: 0xFF8A4C },
     Shade { light: 0x00805C, dark: 0x2FC79A },
@@ -36,6 +36,8 @@ pub(super) const SERIES: [Shade; 8] = [
     Shade { light: 0x5B4FC4, dark: 0xA79CFF },
     Shade { light: 0x6B6B00, dark: 0xD9D660 },
     Shade { light: 0x7A3B3B, dark: 0xD79A9A },
+    Shade { light: 0x2B7F8F, dark: 0x7CD3E0 },
+    Shade { light: 0x4A4A4A, dark: 0xC4C4C4 },
 ];
 
 /// Lines to compare with.

@@ -18,9 +18,8 @@ const BUILD_SECONDS: f64 = 4.0;
 /// A round in which a structure traces a set of rays shall not take much longer; a slower structure traces a sample of the set.
 const ROUND_SECONDS: f64 = 0.2;
 
-/// The rays by which the speed of a structure is guessed, for each thread, and how often it gets a chance to be fast.
+/// The rays by which the speed of a structure is guessed, for each thread.
 const PILOT_RAYS: usize = 16;
-const PILOT_ROUNDS: usize = 4;
 
 /// Builds the structures over the scene and has each trace the same rays, on the threads of the current rayon pool.
 ///
@@ -124,20 +123,24 @@ fn build<'a>(
 
 /// How many of the rays the structure can trace in a round: all, but of a slow structure only what a few rays make expect.
 fn affordable(structure: &SceneStructure<'_>, set: &RaySet) -> usize {
-    let few = PILOT_RAYS * rayon::current_num_threads();
-    let pilot: Vec<_> = set.sample(few).into_iter().map(|index| set.rays[index]).collect();
-    // A machine that does other things too makes a few rays look slow now and then, but not again and again.
-    let all = set.rays.len() as f64;
-    let affordable = (0..PILOT_ROUNDS).find_map(|_| {
+    let all = set.rays.len();
+    let threads = rayon::current_num_threads();
+    // First a ray a thread, which even the slowest can trace in time. Then more, if that was no trouble; and again: a machine that does other
+    // things too makes a few rays look slow now and then, but not every time.
+    let mut guess = threads;
+    for few in [threads, PILOT_RAYS * threads, PILOT_RAYS * threads, PILOT_RAYS * threads] {
+        let pilot: Vec<_> = set.sample(few).into_iter().map(|index| set.rays[index]).collect();
         let per_ray = trace(structure, set.kind, &pilot) / pilot.len().max(1) as f64;
-        let rays = ROUND_SECONDS / per_ray.max(1e-9);
+        guess = guess.max((ROUND_SECONDS / per_ray.max(1e-9)) as usize);
         // Few and cold, they are slower than most.
-        (4.0 * rays >= all).then_some(set.rays.len())
-    });
-    affordable.unwrap_or_else(|| {
-        let per_ray = trace(structure, set.kind, &pilot) / pilot.len().max(1) as f64;
-        ((ROUND_SECONDS / per_ray.max(1e-9)) as usize).clamp(few, set.rays.len().max(few))
-    })
+        if 4 * guess >= all {
+            return all;
+        }
+        if guess < few {
+            break;
+        }
+    }
+    guess
 }
 
 /// Holds the structure's answers to a sample of the rays, given by number, against the reference's.
@@ -238,7 +241,7 @@ mod tests {
             let Vec3 { x, .. } = set.rays[inside].direction;
             let text = error.to_string();
             assert!(text.contains(&format!("along ({x:?}, ")), "{text}");
-            assert!(text.contains(set.kind.name()) && text.contains("bvh-sah-binned"), "{text}");
+            assert!(text.contains(set.kind.name()) && text.contains("bvh-wide"), "{text}");
         }
     }
 }

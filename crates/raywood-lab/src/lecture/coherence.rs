@@ -113,7 +113,14 @@ fn judge(rows: &[Row]) -> Verdict {
         return Verdict { judgement: Judgement::NotMeasured, explanation };
     }
     let (primary, diffuse) = (range(&primary), range(&diffuse));
-    let falls = diffuse.1 < primary.1 || diffuse.1 == f64::NEG_INFINITY;
+    // In each scene, diffuse rays must be the less coherent ones; where there are none there is nothing to hold primary rays against.
+    let coherence = |scene: &str, kind: RayKind| {
+        let row = rows.iter().find(|row| row.scene == scene && row.kind == kind);
+        row.map(|row| row.counts.rays_per_node())
+    };
+    let falls = rows.iter().filter(|row| row.kind == RayKind::Primary).all(|row| {
+        coherence(&row.scene, RayKind::Diffuse).is_some_and(|d| d < row.counts.rays_per_node())
+    });
     let judgement = match primary.1 {
         most if most >= CLAIMED && falls => Judgement::Holds,
         most if most >= GREAT => Judgement::HoldsInPart,
@@ -151,7 +158,7 @@ mod tests {
         assert_eq!(judgement(40, 50), Judgement::HoldsInPart);
         assert_eq!(judgement(20, 5), Judgement::HoldsInPart);
         assert_eq!(judgement(4, 2), Judgement::Fails);
-        assert_eq!(judge(&[made_up(RayKind::Primary, 40)]).judgement, Judgement::Holds);
+        assert_eq!(judge(&[made_up(RayKind::Primary, 40)]).judgement, Judgement::HoldsInPart);
         assert_eq!(judge(&[]).judgement, Judgement::NotMeasured);
     }
 

@@ -3,10 +3,9 @@
 use std::hint::black_box;
 
 use rayon::prelude::*;
-use raywood::Ray;
+use raywood::{Geometry, Ray, Structure};
 
-use super::lab::KindRay;
-use super::measure::{spread_text, trace};
+use super::measure::spread_text;
 use super::{Entry, Findings, Judgement, Lab, LectureError, Verdict};
 use crate::figures::{Axis, BarChart, BarSeries, Cell, Chart, Table};
 use crate::ray_sets::RayKind;
@@ -49,12 +48,8 @@ fn measure(lab: &Lab<'_>) -> Result<Findings, LectureError> {
     // One core, each kind in turn.
     let kinds: Vec<_> =
         RayKind::ALL.iter().copied().filter(|kind| !prepared.rays(*kind).is_empty()).collect();
-    let with_question = |kind: RayKind| {
-        let ask = move |ray: &Ray| KindRay { ray: *ray, any_hit: kind.any_hit() };
-        prepared.rays(kind).iter().map(ask).collect::<Vec<_>>()
-    };
-    let rays: Vec<_> = kinds.iter().map(|kind| with_question(*kind)).collect();
-    let run = |i: usize| Some(seconds(|| trace(structure, &rays[i])).0);
+    let rays: Vec<_> = kinds.iter().map(|kind| repeated(prepared.rays(*kind))).collect();
+    let run = |i: usize| Some(seconds(|| trace(structure, kinds[i], &rays[i])).0);
     let mut timings = take_turns(kinds.len(), lab.rounds(), run).unwrap_or_default();
     let costs: Vec<_> = kinds
         .iter()
@@ -67,25 +62,54 @@ fn measure(lab: &Lab<'_>) -> Result<Findings, LectureError> {
         .collect();
 
     // All kinds together on more and more threads.
-    let all: Vec<_> = rays.concat();
+    let pieces: Vec<_> = kinds
+        .iter()
+        .zip(&rays)
+        .flat_map(|(&kind, rays)| rays.chunks(BATCH).map(move |piece| (kind, piece)))
+        .collect();
+    let all: usize = rays.iter().map(Vec::len).sum();
     let mut scaling = Vec::new();
-    if !all.is_empty() {
+    if all > 0 {
         let counts = thread_counts(lab.threads());
         let pools: Vec<_> = counts.iter().filter_map(|&threads| pool(threads)).collect();
-        let pieces: Vec<_> = all.chunks(256).collect();
         let run = |i: usize| {
-            let work = || pieces.par_iter().for_each(|rays| trace(structure, black_box(rays)));
+            let work = || pieces.par_iter().for_each(|(kind, rays)| trace(structure, *kind, rays));
             Some(seconds(|| pools[i].install(work)).0)
         };
         let measured = take_turns(pools.len(), lab.rounds(), run).unwrap_or_default();
         let point = |(pool, timing): (&rayon::ThreadPool, &Timing)| Scaling {
             threads: pool.current_num_threads(),
-            rays_per_second: all.len() as f64 / timing.median(),
+            rays_per_second: all as f64 / timing.median(),
         };
         scaling = pools.iter().zip(&measured).map(point).collect();
         timings.extend(measured);
     }
     Ok(findings(lab, subject.name(), &costs, &scaling, &timings))
+}
+
+/// How many rays are handed to the structure at once.
+const BATCH: usize = 1024;
+
+/// As few rays as this take less time than waking a thread does.
+const FEWEST: usize = 1 << 16;
+
+/// The rays as often as it takes to be enough for the clock.
+fn repeated(rays: &[Ray]) -> Vec<Ray> {
+    let times = FEWEST.div_ceil(rays.len().max(1));
+    rays.repeat(times)
+}
+
+/// Traces rays of a kind in batches on this thread.
+fn trace<G: Geometry>(structure: &Structure<G>, kind: RayKind, rays: &[Ray]) {
+    let (mut hits, mut blocked) = ([None; BATCH], [false; BATCH]);
+    for batch in rays.chunks(BATCH) {
+        if kind.any_hit() {
+            structure.occluded_batch_serial(batch, &mut blocked[..batch.len()]);
+        } else {
+            structure.intersect_batch_serial(batch, &mut hits[..batch.len()]);
+        }
+    }
+    black_box((hits, blocked));
 }
 
 /// 1, 2, 4 ... and the most.
@@ -108,7 +132,7 @@ fn findings(
 ) -> Findings {
     let cores = scaling.last().map_or(1, |last| last.threads);
     let method = format!(
-        "Scene: {scene}. Rays of every kind as a picture of it has them are traced through the default structure, one after the other: first each \
+        "Scene: {scene}. Rays of every kind as a picture of it has them are traced through the default structure, a thousand at a time: first each \
          kind on one thread, then all together on 1 to {cores} threads. Medians of {} rounds taken in turn, {}. Only the search for hits is timed, \
          not shading. Clock rates are not known to the program, so times are compared instead of cycles.",
         lab.rounds(),

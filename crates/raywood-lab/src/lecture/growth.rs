@@ -177,6 +177,11 @@ fn steps_chart(title: &str, curves: &[Curve]) -> Chart {
     chart(title, "nodes and primitives per ray", series)
 }
 
+/// An exponent as tables show it, so that readers judge as the verdict does.
+fn rounded(exponent: f64) -> f64 {
+    (100.0 * exponent).round() / 100.0
+}
+
 fn judge(curves: &[Curve]) -> Verdict {
     let (brute, others): (Vec<_>, Vec<_>) = curves.iter().partition(|curve| curve.is_brute_force());
     if brute.is_empty() || others.is_empty() {
@@ -187,7 +192,7 @@ fn judge(curves: &[Curve]) -> Verdict {
         |curves: &[&Curve]| curves.iter().map(|c| c.steps_exponent()).collect::<Vec<_>>();
     let (brute, fast) = (range(&exponents(&brute)), exponents(&others));
     let proportional = (brute.0 - 1.0).abs() <= 0.1 && (brute.1 - 1.0).abs() <= 0.1;
-    let logarithmic = fast.iter().filter(|p| **p <= LOGARITHMIC).count();
+    let logarithmic = fast.iter().filter(|p| rounded(**p) <= LOGARITHMIC).count();
     let slow = fast.iter().all(|p| *p <= SLOW);
     let judgement = if proportional && logarithmic == fast.len() {
         Judgement::Holds

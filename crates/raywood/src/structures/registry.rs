@@ -122,17 +122,17 @@ structures! {
         |geometry, options| Bvh2::build_by(Builder::Median, geometry, options);
     BvhSahSweep, Bvh2, "bvh-sah-sweep", "Binary BVH, every split tried by the surface area heuristic.",
         |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
-    BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, binned surface area heuristic: the default.",
+    BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, splits between bins tried by the surface area heuristic.",
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
-    BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions.", WideBvh::build;
+    BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions: the default.", WideBvh::build;
     Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
     KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build;
 }
 
 impl Default for StructureKind {
-    /// The structure that is good for everything.
+    /// The structure that traces fastest.
     fn default() -> Self {
-        Self::BvhSahBinned
+        Self::BvhWide
     }
 }
 
