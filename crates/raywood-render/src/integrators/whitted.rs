@@ -28,10 +28,13 @@ fn render_tile(frame: &Frame<'_>, tile: &Tile, pixels: &mut TilePixels) -> RayCo
         for (column, x) in (tile.x..tile.x + tile.width).enumerate() {
             let path = Path::from_eye(row * TILE_SIZE as usize + column);
             for ray in frame.camera.pixel_rays(x, y, samples) {
+                if frame.progress.is_cancelled() {
+                    return tracer.counts;
+                }
                 tracer.counts.primary += 1;
                 tracer.follow(ray, path);
+                tracer.trace_while(|waiting| waiting >= WAVE);
             }
-            tracer.trace_while(|waiting| waiting >= WAVE);
         }
     }
     tracer.trace_while(|waiting| waiting > 0);
