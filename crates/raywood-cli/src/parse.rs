@@ -71,6 +71,12 @@ impl FromStr for Size {
     }
 }
 
+/// A whole number between two others, both allowed.
+pub(crate) fn whole_number(text: &str, least: u32, most: u32) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+    number.ok_or_else(|| format!("expected a whole number from {least} to {most}"))
+}
+
 /// The name of an acceleration structure.
 pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
     StructureKind::from_name(text).ok_or_else(|| {
@@ -122,6 +128,10 @@ mod tests {
             Ok(PointLight { position: Vec3::new(1.0, 2.0, 3.0), strength: 0.5 })
         );
         assert!("1,2,3,-1".parse::<PointLight>().is_err());
+        assert_eq!((whole_number("1", 1, 9), whole_number("9", 1, 9)), (Ok(1), Ok(9)));
+        for bad in ["0", "10", "1e6", "-1", "", "99999999999999999999"] {
+            assert_eq!(whole_number(bad, 1, 9), Err("expected a whole number from 1 to 9".into()));
+        }
         assert_eq!(field_of_view("35"), Ok(35.0));
         assert!(["0", "180", "nan", "-5", "wide"].iter().all(|bad| field_of_view(bad).is_err()));
         assert_eq!(above_zero("0.5"), Ok(0.5));

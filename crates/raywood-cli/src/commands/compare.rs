@@ -12,7 +12,7 @@ use crate::exporters::html::{HeatMaps, Map};
 use crate::exporters::{self, Compared, Format};
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::structure_kind;
+use crate::parse::{structure_kind, whole_number};
 use crate::print;
 use crate::progress_bar::{during_step, during_steps};
 use crate::scene_source::{self, Loaded};
@@ -34,11 +34,11 @@ pub(crate) struct Args {
     /// Most rays of each kind
     ///
     /// Primary, shadow, reflection and diffuse rays, those that the scene's view has. Structures that would take too long trace a sample.
-    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = |text: &str| whole_number(text, 1, 1 << 24))]
     rays: u32,
 
     /// Rounds of timing
-    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = |text: &str| whole_number(text, 1, 10_000))]
     rounds: u32,
 
     /// table, markdown, csv or json
