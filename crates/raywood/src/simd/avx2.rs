@@ -19,16 +19,12 @@ pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
 }
 
-/// Asks for all cache lines of a value.
+/// Asks for seven cache lines.
 #[inline(always)]
-pub(super) fn prefetch<T>(value: &T) {
-    const LINE: usize = 64;
-    let start: *const T = value;
-    let mut offset = 0;
-    while offset < size_of::<T>() {
-        // SAFETY: a prefetch reads nothing, and every x86-64 processor has it.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(offset)) };
-        offset += LINE;
+pub(super) fn prefetch(start: *const u8) {
+    for line in 0..7 {
+        // SAFETY: a prefetch reads nothing, whatever the address, and every x86-64 processor has it.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line).cast()) };
     }
 }
 
@@ -174,7 +170,7 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, value: &T) {
-        prefetch(value);
+    fn prefetch(self, start: *const u8) {
+        prefetch(start);
     }
 }

@@ -141,8 +141,40 @@ impl Simd for Avx512 {
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, value: &T) {
-        super::avx2::prefetch(value);
+    fn prefetch(self, start: *const u8) {
+        super::avx2::prefetch(start);
+    }
+
+    #[inline(always)]
+    fn partition(
+        self,
+        numbers: &[u32; 64],
+        end: u32,
+        last: u32,
+        lists: &mut [[u32; 80]; 3],
+    ) -> [usize; 3] {
+        let mut counts = [0; 3];
+        let [evens, odds, lasts] = lists.each_mut().map(|list| list.as_mut_ptr().cast::<i32>());
+        for start in (0..64).step_by(16) {
+            // SAFETY: the token; sixteen numbers from `start` on can be read. A list has at most `start` places when sixteen more are written to it,
+            // and room for 80.
+            unsafe {
+                let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+                let places = _mm512_add_epi32(lanes, _mm512_set1_epi32(start as i32));
+                let numbers = _mm512_loadu_epi32(numbers.as_ptr().add(start).cast());
+                let odd = _mm512_test_epi32_mask(numbers, _mm512_set1_epi32(1));
+                let below = _mm512_cmplt_epu32_mask(numbers, _mm512_set1_epi32(end as i32));
+                let is_last = _mm512_cmpeq_epi32_mask(numbers, _mm512_set1_epi32(last as i32));
+                for (number, (list, set)) in
+                    [(evens, !odd), (odds, odd & below), (lasts, is_last)].into_iter().enumerate()
+                {
+                    let places = _mm512_maskz_compress_epi32(set, places);
+                    _mm512_storeu_epi32(list.add(counts[number]), places);
+                    counts[number] += set.count_ones() as usize;
+                }
+            }
+        }
+        counts
     }
 
     #[inline(always)]

@@ -97,7 +97,4 @@ impl Simd for Portable {
     fn load8(self, numbers: &[f32; 8]) -> Array<8> {
         Array(*numbers)
     }
-
-    #[inline(always)]
-    fn prefetch<T>(self, _: &T) {}
 }

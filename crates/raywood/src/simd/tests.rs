@@ -49,7 +49,7 @@ impl Kernel for Everything {
         }
         all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
         bits(simd.splat8(self.0[3]).to_array(), &mut all);
-        simd.prefetch(&self.0);
+        simd.prefetch(self.0.as_ptr().cast());
         all
     }
 }
@@ -161,6 +161,44 @@ fn retaining_keeps_order_and_what_lies_within_the_limit() {
                 let found = dispatch_on(level, Retain(keys.clone(), count, limit));
                 assert_eq!(found, expected, "{}, {count} up to {limit}", level.name());
             }
+        }
+    }
+}
+
+/// Sorts numbers into lists.
+struct Partition([u32; 64]);
+
+impl Kernel for Partition {
+    type Output = [Vec<u32>; 3];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let mut lists = [[u32::MAX; 80]; 3];
+        let counts = simd.partition(&self.0, u32::MAX - 2, u32::MAX, &mut lists);
+        [0, 1, 2].map(|list| lists[list][..counts[list]].to_vec())
+    }
+}
+
+#[test]
+fn numbers_come_into_the_right_lists() {
+    let mut state = 1u32;
+    for round in 0..200 {
+        let numbers: [u32; 64] = std::array::from_fn(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let special = [0, 1, u32::MAX, u32::MAX - 2, u32::MAX - 4, 1 << 31, (1 << 31) + 1];
+            if round == 0 { 2 } else { *special.get(state as usize >> 28).unwrap_or(&(state >> 7)) }
+        });
+        let places = |belongs: fn(u32) -> bool| {
+            let all = (0..64u32).filter(|&place| belongs(numbers[place as usize]));
+            all.collect::<Vec<_>>()
+        };
+        let expected = [
+            places(|n| n % 2 == 0),
+            places(|n| n % 2 == 1 && n < u32::MAX - 2),
+            places(|n| n == u32::MAX),
+        ];
+        for level in levels() {
+            assert_eq!(dispatch_on(level, Partition(numbers)), expected, "{}", level.name());
         }
     }
 }

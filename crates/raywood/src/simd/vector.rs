@@ -49,8 +49,32 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
 
-    /// Asks for the memory of a value to be fetched soon.
-    fn prefetch<T>(self, value: &T);
+    /// Asks for seven cache lines from an address on to be fetched soon. Nothing is read, so any address will do.
+    #[inline(always)]
+    fn prefetch(self, start: *const u8) {
+        let _ = start;
+    }
+
+    /// Writes the places of even numbers, of odd ones below `end`, and of those equal to `last` (which is odd and not below `end`) to a list each, in
+    /// ascending order, and returns how many each list has. What lies behind these counts for nothing.
+    #[inline(always)]
+    fn partition(
+        self,
+        numbers: &[u32; 64],
+        end: u32,
+        last: u32,
+        lists: &mut [[u32; 80]; 3],
+    ) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for (place, &number) in numbers.iter().enumerate() {
+            let belongs = [number & 1 == 0, number & 1 == 1 && number < end, number == last];
+            for list in 0..3 {
+                lists[list][counts[list]] = place as u32;
+                counts[list] += usize::from(belongs[list]);
+            }
+        }
+        counts
+    }
 
     /// Keeps the pairs whose key is at most `limit`, in their order, and returns how many these are. Keys and items are equally many, a
     /// multiple of sixteen at least `count`; those from `count` on count for nothing.

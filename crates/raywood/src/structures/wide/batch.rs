@@ -69,44 +69,14 @@ struct Flight {
     nearest: Nearest,
     /// Its place among all rays.
     number: usize,
-    /// Where it goes next.
-    current: Reference,
     /// How many items are on its stack.
     top: usize,
     /// What was found in the last leaf.
     hits: BlockHits,
 }
 
-/// What a ray does next: the number of its list.
-const NODE: usize = 0;
-const LEAF: usize = 1;
-const DONE: usize = 2;
-
-/// Which rays do what next.
-#[derive(Clone, Copy)]
-struct Lists {
-    rays: [[u8; RAYS]; 3],
-    counts: [usize; 3],
-}
-
-impl Lists {
-    const EMPTY: Self = Self { rays: [[0; RAYS]; 3], counts: [0; 3] };
-
-    /// Adds a ray to the list of what its next place wants.
-    #[inline(always)]
-    fn add(&mut self, place: u8, current: Reference) {
-        let kind =
-            if current == Reference::NOTHING { DONE } else { usize::from(current.is_leaf()) };
-        self.rays[kind][self.counts[kind] % RAYS] = place;
-        self.counts[kind] += 1;
-    }
-
-    /// The rays of a list.
-    #[inline(always)]
-    fn of(&self, kind: usize) -> &[u8] {
-        &self.rays[kind][..self.counts[kind]]
-    }
-}
+/// Where there is no ray in flight: neither a node nor a leaf, nor the end of a ray's way.
+const IDLE: u32 = Reference::NOTHING.0 - 2;
 
 /// Traces all valid rays and tells `finish` what each found. With `ANY` a ray ends with its first hit.
 #[inline(always)]
@@ -118,102 +88,105 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool>(
     mut finish: F,
 ) {
     let size = tree.stack_size();
-    let flights = RAYS.min(rays.len());
-    let (mut keys, mut items) = (vec![0.0f32; flights * size], vec![0u32; flights * size]);
-
-    // Below all lies the end, nearer than any limit.
-    for place in 0..flights {
-        (keys[place * size], items[place * size]) = (f32::NEG_INFINITY, Reference::NOTHING.0);
-    }
     let mut waiting =
         rays.iter().enumerate().filter_map(|(number, ray)| Some((number, PreparedRay::new(ray)?)));
-    let mut begin = |place: u8, lists: &mut Lists| {
-        let (number, ray) = waiting.next()?;
-        lists.add(place, tree.root);
-        let nearest = Nearest::new(&ray);
-        Some(Flight { nearest, ray, number, current: tree.root, top: 1, hits: BlockHits::NONE })
-    };
-    let mut lists = Lists::EMPTY;
-    let mut flying = Vec::with_capacity(flights);
-    for place in 0..flights {
-        flying.extend(begin(place as u8, &mut lists));
+    let mut flying = Vec::with_capacity(RAYS.min(rays.len()));
+    let mut currents = [IDLE; RAYS];
+    for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
+        *current = tree.root.0;
+        flying.push(Flight {
+            nearest: Nearest::new(&ray),
+            ray,
+            number,
+            top: 1,
+            hits: BlockHits::NONE,
+        });
     }
 
-    loop {
-        let now = std::mem::replace(&mut lists, Lists::EMPTY);
+    // Below everything on a stack lies the end, nearer than any limit.
+    let (mut keys, mut items) = (vec![0.0; flying.len() * size], vec![0; flying.len() * size]);
+    for place in 0..flying.len() {
+        (keys[place * size], items[place * size]) = (f32::NEG_INFINITY, Reference::NOTHING.0);
+    }
 
-        // Those whose way has ended make room for others.
-        for &place in now.of(DONE) {
-            let flight = &mut flying[usize::from(place)];
-            let number = flight.number;
-            let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
-            finish(number, ended);
-            if let Some(next) = begin(place, &mut lists) {
-                *flight = next;
-            }
-        }
-        if now.counts[NODE] + now.counts[LEAF] + lists.counts.iter().sum::<usize>() == 0 {
+    let mut lists = [[0; RAYS + 16]; 3];
+    loop {
+        // Find out which rays do what next: all sixteen places at a time, without a branch.
+        let counts = simd.partition(&currents, IDLE, Reference::NOTHING.0, &mut lists);
+        let [nodes, leaves, done] = &lists;
+        let (nodes, leaves, done) = (&nodes[..counts[0]], &leaves[..counts[1]], &done[..counts[2]]);
+        if counts == [0; 3] {
             return;
         }
 
-        for &place in now.of(NODE) {
-            let flight = &mut flying[usize::from(place)];
-            let start = usize::from(place) * size;
+        // Those whose way has ended make room for others.
+        for &place in done {
+            let place = place as usize;
+            let flight = &mut flying[place];
+            let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
+            finish(flight.number, ended);
+            currents[place] = IDLE;
+            if let Some((number, ray)) = waiting.next() {
+                (flight.ray, flight.number, flight.top) = (ray, number, 1);
+                flight.nearest = Nearest::new(&flight.ray);
+                currents[place] = tree.root.0;
+            }
+        }
+
+        for &place in nodes {
+            let place = place as usize;
+            let flight = &mut flying[place];
+            let start = place * size;
             let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
-            let node = &tree.nodes[flight.current.index()];
+            let node = &tree.nodes[Reference(currents[place]).index()];
             let limit = flight.nearest.t_max();
             let (met, near) = children_met(simd, node, &flight.ray, limit);
             let (free_keys, free_items) = free(keys, items, flight.top);
             flight.top += simd.store_sorted(met, near, &node.children, free_keys, free_items);
-            next(simd, tree, flight, items);
-            lists.add(place, flight.current);
+            currents[place] = next(simd, tree, flight, items);
         }
 
         // Test all leaves, and then look closer where something may be hit.
-        let mut hit_places = [0u8; RAYS];
+        let mut hit_places = [0; RAYS];
         let mut hit_count = 0;
-        for &place in now.of(LEAF) {
-            let Flight { ray, nearest, current, hits, .. } = &mut flying[usize::from(place)];
-            *hits = leaf_hits(simd, tree, geometry, *current, ray, nearest.t_max());
+        for &place in leaves {
+            let Flight { ray, nearest, hits, .. } = &mut flying[place as usize];
+            let leaf = Reference(currents[place as usize]);
+            *hits = leaf_hits(simd, tree, geometry, leaf, ray, nearest.t_max());
             hit_places[hit_count % RAYS] = place;
             hit_count += usize::from(hits.hit | hits.doubtful != 0);
         }
         for &place in &hit_places[..hit_count] {
-            let Flight { ray, nearest, current, hits, top, .. } = &mut flying[usize::from(place)];
-            let start = usize::from(place) * size;
-            let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
+            let place = place as usize;
+            let Flight { ray, nearest, hits, top, .. } = &mut flying[place];
+            let leaf = Reference(currents[place]);
             if ANY {
-                if any_blocks(tree, geometry, *current, hits, ray) {
+                if any_blocks(tree, geometry, leaf, hits, ray) {
                     nearest.block();
                     *top = 1;
                 }
             } else {
                 let before = nearest.t_max();
-                take_closest(tree, geometry, *current, hits, ray, nearest);
+                take_closest(tree, geometry, leaf, hits, ray, nearest);
                 if nearest.t_max() < before {
+                    let start = place * size;
+                    let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
                     *top = simd.retain(keys, items, *top, lengthened(nearest.t_max()));
                 }
             }
         }
-        for &place in now.of(LEAF) {
-            let flight = &mut flying[usize::from(place)];
-            next(simd, tree, flight, &items[usize::from(place) * size..][..size]);
-            lists.add(place, flight.current);
+        for &place in leaves {
+            let place = place as usize;
+            currents[place] = next(simd, tree, &mut flying[place], &items[place * size..][..size]);
         }
     }
 }
 
 /// Takes the next node or leaf from the ray's stack and asks for its memory.
 #[inline(always)]
-fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight, items: &[u32]) {
+fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight, items: &[u32]) -> u32 {
     flight.top -= 1;
-    flight.current = Reference(items[flight.top]);
-    let index = flight.current.index();
-    if flight.current.is_leaf() {
-        if let Some(block) = tree.blocks.get(index) {
-            simd.prefetch(block);
-        }
-    } else if let Some(node) = tree.nodes.get(index) {
-        simd.prefetch(node);
-    }
+    let reference = Reference(items[flight.top]);
+    simd.prefetch(tree.address(reference));
+    reference.0
 }

@@ -49,6 +49,16 @@ impl WideBvh {
         self.bounds
     }
 
+    /// Where a node or leaf lies in memory, to be fetched: computed without a branch, which nobody could predict. Of nothing it means nothing.
+    #[inline(always)]
+    fn address(&self, reference: Reference) -> *const u8 {
+        let kind = usize::from(reference.is_leaf());
+        let start = [self.nodes.as_ptr() as usize, self.blocks.as_ptr() as usize][kind];
+        let size =
+            size_of::<WideNode>() - (size_of::<WideNode>() - size_of::<TriangleBlock>()) * kind;
+        std::ptr::without_provenance(start.wrapping_add(size * reference.index()))
+    }
+
     /// How many items the stack of a traversal has room for: of each node on the way all children but one stay behind, below them lies the mark of
     /// the end, and sixteen are stored before it is known how many count. A multiple of sixteen.
     fn stack_size(&self) -> usize {
