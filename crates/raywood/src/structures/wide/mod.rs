@@ -53,10 +53,9 @@ impl WideBvh {
     #[inline(always)]
     fn address(&self, reference: Reference) -> *const u8 {
         let kind = usize::from(reference.is_leaf());
-        let start = [self.nodes.as_ptr() as usize, self.blocks.as_ptr() as usize][kind];
-        let size =
-            size_of::<WideNode>() - (size_of::<WideNode>() - size_of::<TriangleBlock>()) * kind;
-        std::ptr::without_provenance(start.wrapping_add(size * reference.index()))
+        let start = [self.nodes.as_ptr().cast::<u8>(), self.blocks.as_ptr().cast()][kind];
+        let size = [size_of::<WideNode>(), size_of::<TriangleBlock>()][kind];
+        start.wrapping_add(size * reference.index())
     }
 
     /// How many items the stack of a traversal has room for: of each node on the way all children but one stay behind, below them lies the mark of
