@@ -1,4 +1,5 @@
-//! Times one structure's batches on one thread: a scratch pad for kernel work.
+//! Nanoseconds per ray of structures' batches on one thread, for work on kernels: `kernels SCENE STRUCTURE...`, the median and the least of nine rounds.
+
 use raywood::{Structure, StructureKind};
 use raywood_lab::ray_sets::ray_sets;
 use raywood_render::{PreparedScene, default_view};
