@@ -1,11 +1,11 @@
-//! AVX2: eight numbers in a register, sixteen in two.
+//! AVX2 with FMA: eight numbers in a register, sixteen in two.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
 use super::{Float, Kernel, Simd};
 
-/// The token of AVX2: whoever has it runs on a processor with it.
+/// The token of AVX2: whoever has it runs on a processor with it and FMA.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2(());
 
@@ -14,7 +14,7 @@ pub(crate) struct Avx2(());
 /// # Safety
 ///
 /// The level is [available](super::SimdLevel::is_available).
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
 }
@@ -86,6 +86,12 @@ impl Float for F8 {
     }
 
     #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: the values came from the token.
+        Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, addend.0) })
+    }
+
+    #[inline(always)]
     fn less(self, other: Self) -> u32 {
         // SAFETY: the values came from the token.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
@@ -120,6 +126,12 @@ impl Float for F16 {
     #[inline(always)]
     fn abs(self) -> Self {
         Self([self.0[0].abs(), self.0[1].abs()])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let ([a, b], [c, d], [e, f]) = (self.0, factor.0, addend.0);
+        Self([a.mul_add(c, e), b.mul_add(d, f)])
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ pub(crate) struct Avx512(());
 /// # Safety
 ///
 /// The level is [available](super::SimdLevel::is_available).
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx512f,fma,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
 }
@@ -28,7 +28,7 @@ pub(crate) struct F16(__m512);
 pub(crate) struct F8(__m256);
 
 macro_rules! float {
-    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $cmp:ident) => {
+    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $fma:ident, $cmp:ident) => {
         float!(@operator $type, Add, add, $add);
         float!(@operator $type, Sub, sub, $sub);
         float!(@operator $type, Mul, mul, $mul);
@@ -53,6 +53,12 @@ macro_rules! float {
             fn abs(self) -> Self {
                 // SAFETY: the value came from the token.
                 Self(unsafe { $abs(self.0) })
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $fma(self.0, factor.0, addend.0) })
             }
 
             #[inline(always)]
@@ -97,6 +103,7 @@ float!(
     _mm512_min_ps,
     _mm512_max_ps,
     |x| _mm512_abs_ps(x),
+    _mm512_fmadd_ps,
     _mm512_cmp_ps_mask
 );
 float!(
@@ -109,6 +116,7 @@ float!(
     _mm256_min_ps,
     _mm256_max_ps,
     |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
+    _mm256_fmadd_ps,
     _mm256_cmp_ps_mask
 );
 

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 pub enum SimdLevel {
     /// What every processor has.
     Portable,
-    /// AVX2: eight numbers at once.
+    /// AVX2 and FMA: eight numbers at once.
     Avx2,
     /// AVX-512 (F, VL, DQ, BW): sixteen numbers at once.
     Avx512,
@@ -43,6 +43,7 @@ impl SimdLevel {
             Self::Avx2 => {
                 // The processors that have AVX2 count bits too; kernels rely on it.
                 is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("fma")
                     && is_x86_feature_detected!("bmi1")
                     && is_x86_feature_detected!("bmi2")
                     && is_x86_feature_detected!("lzcnt")

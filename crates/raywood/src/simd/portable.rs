@@ -59,6 +59,12 @@ impl<const N: usize> Float for Array<N> {
     }
 
     #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // Two roundings: without the instruction a fused one is a call.
+        self * factor + addend
+    }
+
+    #[inline(always)]
     fn less(self, other: Self) -> u32 {
         self.lanes(other, |a, b| a < b)
     }

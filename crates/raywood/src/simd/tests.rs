@@ -211,3 +211,37 @@ fn levels_have_names() {
     assert_eq!(SimdLevel::from_name("mmx"), None);
     assert!(SimdLevel::Portable.is_available() && SimdLevel::active().is_available());
 }
+
+/// Products with sums, by every level, of numbers that overflow nowhere.
+struct MulAdd([f32; 16], [f32; 16], [f32; 16]);
+
+impl Kernel for MulAdd {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Vec<f32> {
+        let [a, b, c] = [&self.0, &self.1, &self.2].map(|numbers| simd.load16(numbers));
+        let sixteen = a.mul_add(b, c).to_array();
+        let half = |numbers: &[f32; 16]| *numbers.first_chunk::<8>().expect("eight of sixteen");
+        let (a, b, c) = (half(&self.0), half(&self.1), half(&self.2));
+        let eight = simd.load8(&a).mul_add(simd.load8(&b), simd.load8(&c)).to_array();
+        sixteen.into_iter().chain(eight).collect()
+    }
+}
+
+#[test]
+fn a_product_with_a_sum_is_rounded_at_most_twice() {
+    let numbers =
+        |seed: u32| std::array::from_fn(|lane| (seed * 77 + lane as u32 * 13) as f32 * 0.37 - 20.0);
+    let (a, b, c): ([f32; 16], [f32; 16], [f32; 16]) = (numbers(1), numbers(2), numbers(3));
+    for level in levels() {
+        let found = dispatch_on(level, MulAdd(a, b, c));
+        for (place, found) in found.into_iter().enumerate() {
+            let lane = place % 16;
+            let product = f64::from(a[lane]) * f64::from(b[lane]);
+            let error = (f64::from(found) - (product + f64::from(c[lane]))).abs();
+            let bound = f64::from(f32::EPSILON) * (product.abs() + f64::from(c[lane]).abs());
+            assert!(error <= bound, "{} at {place}: off by {error}", level.name());
+        }
+    }
+}

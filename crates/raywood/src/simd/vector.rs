@@ -20,6 +20,10 @@ pub(crate) trait Float:
     /// The absolute values.
     fn abs(self) -> Self;
 
+    /// `self * factor + addend`, rounded once where the processor has an instruction for it, else twice: for what needs a bound on the error, not
+    /// the same number everywhere.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
     /// The lanes where this is less.
     fn less(self, other: Self) -> u32;
 
