@@ -28,6 +28,28 @@ pub(super) fn prefetch(start: *const u8) {
     }
 }
 
+macro_rules! extreme_of_eight {
+    ($name:ident, $of_four:ident, $of_one:ident, $what:literal) => {
+        #[doc = concat!("The ", $what, " of eight numbers.")]
+        ///
+        /// # Safety
+        ///
+        /// The processor has AVX2.
+        #[inline(always)]
+        pub(super) unsafe fn $name(v: __m256) -> f32 {
+            // SAFETY: the caller's.
+            unsafe {
+                let four = $of_four(_mm256_castps256_ps128(v), _mm256_extractf128_ps::<1>(v));
+                let two = $of_four(four, _mm_movehl_ps(four, four));
+                _mm_cvtss_f32($of_one(two, _mm_movehdup_ps(two)))
+            }
+        }
+    };
+}
+
+extreme_of_eight!(least_of_eight, _mm_min_ps, _mm_min_ss, "least");
+extreme_of_eight!(greatest_of_eight, _mm_max_ps, _mm_max_ss, "greatest");
+
 /// Eight numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct F8(__m256);
@@ -104,6 +126,29 @@ impl Float for F8 {
     }
 
     #[inline(always)]
+    fn replaced(self, lanes: u32, chosen: Self) -> Self {
+        // SAFETY: the values came from the token.
+        unsafe {
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_and_si256(_mm256_set1_epi32(lanes as i32), bits);
+            let whole = _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, bits));
+            Self(_mm256_blendv_ps(self.0, chosen.0, whole))
+        }
+    }
+
+    #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: the value came from the token.
+        unsafe { least_of_eight(self.0) }
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        // SAFETY: the value came from the token.
+        unsafe { greatest_of_eight(self.0) }
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; 8] {
         // SAFETY: a vector is an array of its numbers, of the same size.
         unsafe { std::mem::transmute(self.0) }
@@ -142,6 +187,21 @@ impl Float for F16 {
     #[inline(always)]
     fn less_or_equal(self, other: Self) -> u32 {
         self.0[0].less_or_equal(other.0[0]) | self.0[1].less_or_equal(other.0[1]) << 8
+    }
+
+    #[inline(always)]
+    fn replaced(self, lanes: u32, chosen: Self) -> Self {
+        Self([self.0[0].replaced(lanes, chosen.0[0]), self.0[1].replaced(lanes >> 8, chosen.0[1])])
+    }
+
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.0[0].smaller(self.0[1]).least()
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0[0].larger(self.0[1]).greatest()
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::avx2::{greatest_of_eight, least_of_eight};
 use super::{Float, Kernel, Simd};
 
 /// The token of AVX-512: whoever has it runs on a processor with F, VL, DQ and BW.
@@ -28,7 +29,7 @@ pub(crate) struct F16(__m512);
 pub(crate) struct F8(__m256);
 
 macro_rules! float {
-    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $fma:ident, $cmp:ident) => {
+    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $fma:ident, $cmp:ident, $blend:ident, $least:path, $greatest:path) => {
         float!(@operator $type, Add, add, $add);
         float!(@operator $type, Sub, sub, $sub);
         float!(@operator $type, Mul, mul, $mul);
@@ -74,6 +75,24 @@ macro_rules! float {
             }
 
             #[inline(always)]
+            fn replaced(self, lanes: u32, chosen: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $blend(lanes as _, self.0, chosen.0) })
+            }
+
+            #[inline(always)]
+            fn least(self) -> f32 {
+                // SAFETY: the value came from the token.
+                unsafe { $least(self.0) }
+            }
+
+            #[inline(always)]
+            fn greatest(self) -> f32 {
+                // SAFETY: the value came from the token.
+                unsafe { $greatest(self.0) }
+            }
+
+            #[inline(always)]
             fn to_array(self) -> $array {
                 // SAFETY: a vector is an array of its numbers, of the same size.
                 unsafe { std::mem::transmute(self.0) }
@@ -104,7 +123,10 @@ float!(
     _mm512_max_ps,
     |x| _mm512_abs_ps(x),
     _mm512_fmadd_ps,
-    _mm512_cmp_ps_mask
+    _mm512_cmp_ps_mask,
+    _mm512_mask_blend_ps,
+    _mm512_reduce_min_ps,
+    _mm512_reduce_max_ps
 );
 float!(
     F8,
@@ -117,7 +139,10 @@ float!(
     _mm256_max_ps,
     |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
     _mm256_fmadd_ps,
-    _mm256_cmp_ps_mask
+    _mm256_cmp_ps_mask,
+    _mm256_mask_blend_ps,
+    least_of_eight,
+    greatest_of_eight
 );
 
 impl Simd for Avx512 {

@@ -75,6 +75,24 @@ impl<const N: usize> Float for Array<N> {
     }
 
     #[inline(always)]
+    fn replaced(self, lanes: u32, chosen: Self) -> Self {
+        Self(std::array::from_fn(|lane| match lanes >> lane & 1 {
+            1 => chosen.0[lane],
+            _ => self.0[lane],
+        }))
+    }
+
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, smaller)
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, larger)
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; N] {
         self.0
     }

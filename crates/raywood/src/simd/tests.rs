@@ -40,6 +40,9 @@ impl Kernel for Everything {
             bits(vector.to_array(), &mut all);
         }
         all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
+        bits(a.replaced(0xA53C, b).to_array(), &mut all);
+        let known = simd.splat16(0.0).larger(a).smaller(simd.splat16(1e6));
+        bits([known.least(), known.greatest()], &mut all);
         bits(simd.splat16(self.0[5]).to_array(), &mut all);
 
         let half = |numbers: &[f32; 16]| *numbers.first_chunk::<8>().expect("eight of sixteen");
@@ -48,6 +51,9 @@ impl Kernel for Everything {
             bits(vector.to_array(), &mut all);
         }
         all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
+        bits(a.replaced(0x5C, b).to_array(), &mut all);
+        let known = simd.splat8(0.0).larger(a).smaller(simd.splat8(1e6));
+        bits([known.least(), known.greatest()], &mut all);
         bits(simd.splat8(self.0[3]).to_array(), &mut all);
         simd.prefetch(self.0.as_ptr().cast());
         all

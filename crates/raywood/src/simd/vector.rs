@@ -30,6 +30,15 @@ pub(crate) trait Float:
     /// The lanes where this is less or equal.
     fn less_or_equal(self, other: Self) -> u32;
 
+    /// The numbers of `chosen` in the given lanes, and of this vector in the others.
+    fn replaced(self, lanes: u32, chosen: Self) -> Self;
+
+    /// The least of all numbers, none of which is NaN.
+    fn least(self) -> f32;
+
+    /// The greatest of all numbers, none of which is NaN.
+    fn greatest(self) -> f32;
+
     /// The numbers.
     fn to_array(self) -> Self::Array;
 }
