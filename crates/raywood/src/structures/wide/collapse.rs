@@ -25,6 +25,8 @@ impl Plan {
         let root_area = tree.bounds().half_area();
         let mut costs: Vec<Costs> = vec![[f32::INFINITY; WIDTH]; nodes.len()];
         let mut counts = vec![0u32; nodes.len()];
+        // Into how many trees a subtree can be divided: as many as it has leaves.
+        let mut most = vec![1u8; nodes.len()];
         let mut choices = vec![[0u8; WIDTH]; nodes.len()];
 
         // Children come after their parents.
@@ -34,7 +36,7 @@ impl Plan {
             let area = area as f32;
             if node.is_leaf() {
                 counts[number] = node.count();
-                costs[number] = [area * LEAF_COST; WIDTH];
+                costs[number][0] = area * LEAF_COST;
                 choices[number][0] = 1;
                 continue;
             }
@@ -43,8 +45,12 @@ impl Plan {
 
             // Divide so many trees among both children in the best way.
             let mut divided = [f32::INFINITY; WIDTH];
-            for trees in 2..=WIDTH {
-                for to_left in 1..trees {
+            let (most_left, most_right) = (usize::from(most[left]), usize::from(most[right]));
+            let most_here = (most_left + most_right).min(WIDTH);
+            most[number] = most_here as u8;
+            for trees in 2..=most_here {
+                let fewest_left = trees.saturating_sub(most_right).max(1);
+                for to_left in fewest_left..=most_left.min(trees - 1) {
                     let cost = costs[left][to_left - 1] + costs[right][trees - to_left - 1];
                     if cost < divided[trees - 1] {
                         divided[trees - 1] = cost;
@@ -54,14 +60,15 @@ impl Plan {
             }
 
             // One tree: a leaf, or a node over sixteen.
-            let as_node = area + divided[WIDTH - 1];
+            let as_node = area + divided[most_here - 1];
+            choices[number][WIDTH - 1] = choices[number][most_here - 1];
             let as_leaf = match counts[number] as usize <= LANES {
                 true => area * LEAF_COST,
                 false => f32::INFINITY,
             };
             costs[number][0] = as_leaf.min(as_node);
             choices[number][0] = u8::from(as_leaf <= as_node && as_leaf.is_finite());
-            for trees in 2..=WIDTH {
+            for trees in 2..=most_here {
                 let fewer = costs[number][trees - 2];
                 if fewer <= divided[trees - 1] {
                     // Sixteen are asked for only when there must be a node here.
