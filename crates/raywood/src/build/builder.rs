@@ -3,6 +3,7 @@
 use super::driver;
 use super::median::Median;
 use super::midpoint::Midpoint;
+use super::reinsertion;
 use super::sah_binned::BinnedSah;
 use super::sah_sweep::SweepSah;
 use crate::{BuildError, BuildOptions, Bvh2, Geometry};
@@ -34,11 +35,12 @@ impl Bvh2 {
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
         let bounds = driver::primitive_bounds(geometry)?;
-        Ok(match builder {
+        let tree = match builder {
             Builder::Midpoint => driver::build(&bounds, &Midpoint::new(options)),
             Builder::Median => driver::build(&bounds, &Median::new(options)),
             Builder::SahSweep => driver::build(&bounds, &SweepSah::new(options)),
             Builder::SahBinned => driver::build(&bounds, &BinnedSah::new(options)),
-        })
+        };
+        Ok(reinsertion::optimize(tree, options))
     }
 }

@@ -7,6 +7,7 @@ mod median;
 mod midpoint;
 mod options;
 mod packed_aabb;
+mod reinsertion;
 mod sah_binned;
 mod sah_sweep;
 

@@ -20,6 +20,12 @@ pub struct BuildOptions {
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
     pub primitive_cost: f32,
+    /// How many passes at most improve a bounding volume hierarchy after it is built, by moving subtrees to where they cost less. A pass that gains next
+    /// to nothing is the last. `None` leaves it to the structure: four for the wide tree, none for the binary trees, which then show their builders.
+    pub reinsertion_passes: Option<usize>,
+    /// Which share of the nodes a pass of reinsertion tries to move, 0 to 1: the largest ones, which matter most. More gain a little more and take
+    /// longer in proportion.
+    pub reinsertion_share: f32,
     /// About how many cells a grid has for each primitive, 0.01 to 100. More cells make shorter lists, longer walks and more memory.
     pub grid_density: f32,
     /// How many primitives a cell of an octree may hold without being split, at least 1.
@@ -37,6 +43,8 @@ impl Default for BuildOptions {
             max_leaf_size: 8,
             node_cost: 1.0,
             primitive_cost: 1.0,
+            reinsertion_passes: None,
+            reinsertion_share: 0.05,
             grid_density: 4.0,
             octree_leaf_size: 8,
             octree_max_depth: crate::structures::octree::MAX_LEVELS,
@@ -49,11 +57,15 @@ impl BuildOptions {
     /// The options with every value inside its documented range.
     pub(crate) fn clamped(&self) -> Self {
         let cost = |c: f32| if c.is_finite() && c > 0.0 { c } else { 1.0 };
+        // Not a number counts as nothing.
+        let share = |share: f32| if share > 0.0 { share.min(1.0) } else { 0.0 };
         Self {
             bins: self.bins.clamp(2, super::sah_binned::MAX_BINS),
             max_leaf_size: self.max_leaf_size.max(1),
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
+            reinsertion_passes: self.reinsertion_passes,
+            reinsertion_share: share(self.reinsertion_share),
             grid_density: if self.grid_density.is_nan() {
                 Self::default().grid_density
             } else {
@@ -61,11 +73,7 @@ impl BuildOptions {
             },
             octree_leaf_size: self.octree_leaf_size.max(1),
             octree_max_depth: self.octree_max_depth.clamp(1, crate::structures::octree::MAX_LEVELS),
-            kd_empty_bonus: if self.kd_empty_bonus > 0.0 {
-                self.kd_empty_bonus.min(1.0)
-            } else {
-                0.0
-            },
+            kd_empty_bonus: share(self.kd_empty_bonus),
         }
     }
 

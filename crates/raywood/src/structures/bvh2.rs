@@ -111,6 +111,11 @@ impl Bvh2 {
         Self { nodes, primitive_indices }
     }
 
+    /// Nodes and indices, to be changed.
+    pub(crate) fn into_parts(self) -> (Vec<Node>, Vec<u32>) {
+        (self.nodes, self.primitive_indices)
+    }
+
     /// All nodes; the first is the root.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes

@@ -6,13 +6,24 @@ use super::node::{Reference, WideNode};
 use crate::geometry::{LANES, TriangleBlock};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry};
 
+/// The most primitives in a leaf of the binary tree: half of what a leaf of the wide tree holds, so that reinsertion can tell apart what lies in it. Single
+/// primitives gain little more and take twice as many nodes.
+const BINARY_LEAF_SIZE: usize = LANES / 2;
+
+/// How often the binary tree is improved by reinsertion unless the options say it.
+const REINSERTION_PASSES: usize = 4;
+
 /// Builds the tree.
 pub(super) fn build<G: Geometry>(
     geometry: &G,
     options: &BuildOptions,
 ) -> Result<WideBvh, BuildError> {
-    let max_leaf_size = options.max_leaf_size.min(LANES);
-    let tree = Bvh2::build(geometry, &BuildOptions { max_leaf_size, ..options.clone() })?;
+    let options = BuildOptions {
+        max_leaf_size: options.max_leaf_size.min(BINARY_LEAF_SIZE),
+        reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
+        ..options.clone()
+    };
+    let tree = Bvh2::build(geometry, &options)?;
     let plan = Plan::new(&tree);
     let mut builder = Wide {
         geometry,

@@ -1,0 +1,73 @@
+//! Moves and the search for them, against the definition of the cost and against trying every place.
+
+use super::linked_tree::LinkedTree;
+use super::search::best_move;
+use crate::{BuildOptions, Bvh2, Spheres, Vec3};
+
+/// A tree over spheres of different sizes, one in each leaf, built badly.
+fn tree(count: usize, seed: u32) -> (Spheres, LinkedTree) {
+    let mut state = seed;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    };
+    let mut sphere = || (Vec3::new(random(), random(), random()), 0.01 + 0.3 * random().powi(4));
+    let spheres = Spheres::new((0..count).map(|_| sphere()).collect()).expect("finite spheres");
+    let options = BuildOptions { max_leaf_size: 1, bins: 2, ..Default::default() };
+    let tree = Bvh2::build(&spheres, &options).expect("it builds");
+    (spheres, LinkedTree::new(tree))
+}
+
+/// All moves that change something.
+fn moves(tree: &LinkedTree, from: usize) -> impl Iterator<Item = usize> {
+    let stays = [tree.parent(from), tree.sibling(from)];
+    (0..tree.len()).filter(move |&to| tree.can_move(from, to) && !stays.contains(&to))
+}
+
+fn assert_near(a: f64, b: f64) {
+    assert!((a - b).abs() <= 1e-12 * a.abs().max(b.abs()).max(1.0), "{a} is not {b}");
+}
+
+#[test]
+fn a_move_changes_the_cost_as_it_says_and_can_be_taken_back() {
+    let (spheres, mut tree) = tree(12, 1);
+    let before = tree.clone();
+    for from in 1..tree.len() {
+        for to in moves(&before, from).collect::<Vec<_>>() {
+            let parent = tree.parent(from);
+            let growth = tree.move_beside(from, to);
+            assert_near(tree.cost(), before.cost() + growth);
+            assert_eq!(tree.clone().into_bvh2().check(&spheres), Ok(()));
+            assert_near(tree.move_beside(from, parent), -growth);
+            assert!(tree == before, "{from} beside {to} and back");
+        }
+    }
+}
+
+#[test]
+fn the_search_finds_the_best_of_all_places() {
+    for seed in 0..20 {
+        let (_, tree) = tree(20, seed);
+        for from in 1..tree.len() {
+            let gain = |to| -tree.clone().move_beside(from, to);
+            let best = moves(&tree, from).map(gain).fold(0.0, f64::max);
+            match best_move(&tree, from) {
+                Some(found) => {
+                    assert_near(found.gain, best);
+                    assert_near(gain(found.to as usize), best);
+                }
+                None => assert_near(best, 0.0),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_subtree_is_not_moved_into_itself() {
+    let (_, tree) = tree(20, 3);
+    assert!((0..tree.len()).all(|to| !tree.can_move(0, to)));
+    for (left, from) in (1..tree.len()).filter_map(|from| Some((tree.left_child(from)?, from))) {
+        assert!(!tree.can_move(from, from) && !tree.can_move(from, left));
+        assert!(tree.can_move(left, 0));
+    }
+}
