@@ -9,7 +9,7 @@ use crate::ray_sets::RaySet;
 
 pub(super) const ENTRY: PeerEntry = PeerEntry {
     name: "raywood",
-    settings: "Bvh::build and bvh-wide, default options; closest hits with t, u, v and primitive",
+    settings: "Bvh::build and bvh-wide, default options (bvh-wide with reinsertion); closest hits with t, u, v and primitive",
     build,
 };
 

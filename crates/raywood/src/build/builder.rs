@@ -24,7 +24,8 @@ pub enum Builder {
 }
 
 impl Bvh2 {
-    /// Builds the tree with the given builder, in parallel in the caller's rayon pool; the same tree for any number of threads.
+    /// Builds the tree with the given builder, in parallel in the caller's rayon pool, and improves it by reinsertion if the options ask for it; the
+    /// same tree for any number of threads.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
 //! Builders: from primitives to the binary tree of [`Bvh2`](crate::Bvh2). One builder per file; `driver.rs` holds what
-//! they share, the recursion and its parallel form.
+//! they share, the recursion and its parallel form. `reinsertion/` improves a finished tree, whoever built it.
 
 mod builder;
 pub(crate) mod driver;

@@ -29,15 +29,14 @@ pub(super) fn best_move(tree: &LinkedTree, node: usize) -> Option<Move> {
         visits: 0,
     };
 
-    // Its parent vanishes when it is taken out.
-    let parent = tree.parent(node);
-    let mut freed = tree.bounds(parent).half_area();
-    // The box of what remains below `pivot`, the ancestor from which places are looked for downwards.
-    let mut remaining = tree.bounds(tree.sibling(node));
-    search.below(tree.sibling(node), freed);
+    // When it is taken out its parent vanishes, and its sibling takes that place.
+    let (sibling, mut pivot) = (tree.sibling(node), tree.parent(node));
+    let mut freed = tree.bounds(pivot).half_area();
+    search.below(sibling, freed);
 
-    // From one ancestor to the next: what lies below it on the other side, and the ancestor itself.
-    let mut pivot = parent;
+    // From one ancestor to the next: first everything on its other side, whose boxes above do not shrink, then the ancestor itself, which has shrunk to
+    // what remains in it.
+    let mut remaining = tree.bounds(sibling);
     while pivot != 0 && search.visits < MAX_VISITS {
         let sibling = tree.sibling(pivot);
         search.below(sibling, freed);
