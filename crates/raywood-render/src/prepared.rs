@@ -1,9 +1,7 @@
 //! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
 
-use raywood::{
-    Aabb, BuildError, BuildOptions, Geometry, Joined, Spheres, Structure, StructureKind,
-};
-use raywood::{TriangleMesh, Vec3};
+use raywood::{Aabb, BuildError, BuildOptions, Geometry, Joined, SimdLevel, Spheres};
+use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
 
 /// All surfaces of a scene: first its triangles, then its spheres.
@@ -94,6 +92,11 @@ impl<'a> PreparedScene<'a> {
     /// The structure over the scene's surfaces.
     pub fn structure(&self) -> &Structure<Surfaces<'a>> {
         &self.structure
+    }
+
+    /// Has other vector instructions trace the structure: see [`Structure::set_simd_level`].
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.structure.set_simd_level(level);
     }
 
     /// The number of the triangle that a primitive is, or else that of the sphere.

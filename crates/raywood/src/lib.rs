@@ -60,7 +60,7 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use ray::Ray;
-pub use simd::SimdLevel;
+pub use simd::{SimdLevel, SimdLevelError};
 pub use stats::{Level, NodeView, StructureStats};
 pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};
 pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh};

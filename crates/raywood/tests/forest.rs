@@ -1,6 +1,6 @@
 //! Every structure of the registry: the same answers on every mesh, checked against brute force in double precision.
 
-use raywood::{BuildOptions, Hit, Ray, Structure, StructureKind, TriangleMesh, Vec3};
+use raywood::{BuildOptions, Hit, Ray, SimdLevel, Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, nasty, oracle, rays, shapes};
 
 fn build(kind: StructureKind, mesh: &TriangleMesh) -> Structure<&TriangleMesh> {
@@ -45,6 +45,26 @@ fn every_structure_agrees_with_brute_force_and_with_every_other() {
             let mut blocked = vec![false; rays.len()];
             structure.occluded_batch(&rays, &mut blocked);
             assert!(blocked.iter().zip(&hits).all(|(b, hit)| *b == hit.is_some()), "{}", what());
+        }
+    }
+}
+
+#[test]
+fn vector_instructions_can_be_chosen_and_change_no_answer() {
+    let mesh = &nasty::all()[0].mesh;
+    let rays = rays::against(mesh, 500, 7);
+    for &kind in StructureKind::ALL {
+        let mut structure = build(kind, mesh);
+        let expected: Vec<_> = rays.iter().map(|ray| structure.intersect(ray)).collect();
+        let uses_vectors = kind == StructureKind::BvhWide;
+        assert_eq!(structure.simd_level(), uses_vectors.then(SimdLevel::active));
+        for &level in SimdLevel::ALL {
+            structure.set_simd_level(level);
+            let used = if level.is_available() { level } else { SimdLevel::Portable };
+            assert_eq!(structure.simd_level(), uses_vectors.then_some(used));
+            let mut hits = vec![None; rays.len()];
+            structure.intersect_batch(&rays, &mut hits);
+            assert!(hits == expected, "{} on {}", kind.name(), level.name());
         }
     }
 }

@@ -1,6 +1,10 @@
 //! The levels of instructions, and which one is used.
 
+use std::fmt;
 use std::sync::OnceLock;
+
+/// The level that kernels use unless they are told otherwise, once it is decided.
+static ACTIVE: OnceLock<SimdLevel> = OnceLock::new();
 
 /// A set of vector instructions that kernels are compiled for. All levels give the same answers, to the bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,15 +66,103 @@ impl SimdLevel {
         }
     }
 
-    /// The level that kernels use: the best that the processor has, but none above the one that the environment variable
-    /// [`RAYWOOD_SIMD`](Self::VARIABLE) names (`portable`, `avx2` or `avx512`; anything else counts for nothing). Decided once.
+    /// The levels that this processor has, the fastest last.
+    pub fn available() -> impl DoubleEndedIterator<Item = Self> {
+        Self::ALL.iter().copied().filter(|level| level.is_available())
+    }
+
+    /// The level that structures trace with unless they are [told otherwise](crate::Structure::set_simd_level): the best that the processor
+    /// has, but none above the one that the environment variable [`RAYWOOD_SIMD`](Self::VARIABLE) names (`portable`, `avx2` or `avx512`;
+    /// anything else counts for nothing). Decided once for the process.
     pub fn active() -> Self {
-        static ACTIVE: OnceLock<SimdLevel> = OnceLock::new();
         *ACTIVE.get_or_init(|| {
             let named = std::env::var(Self::VARIABLE).ok();
             let most = named.and_then(|name| Self::from_name(&name)).unwrap_or(Self::Avx512);
-            let usable = |level: &Self| *level <= most && level.is_available();
-            Self::ALL.iter().rev().copied().find(usable).unwrap_or(Self::Portable)
+            let usable = |level: &Self| *level <= most;
+            Self::available().rev().find(usable).unwrap_or(Self::Portable)
         })
+    }
+
+    /// Makes this the [active](Self::active) level, whatever the environment says. Before the first structure is built: what is decided
+    /// stays.
+    ///
+    /// # Errors
+    ///
+    /// The processor lacks the instructions, or another level is active already.
+    pub fn activate(self) -> Result<(), SimdLevelError> {
+        if !self.is_available() {
+            return Err(SimdLevelError::Unavailable { level: self });
+        }
+        match *ACTIVE.get_or_init(|| self) {
+            active if active == self => Ok(()),
+            active => Err(SimdLevelError::Decided { level: self, active }),
+        }
+    }
+}
+
+/// Why a level cannot be the active one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SimdLevelError {
+    /// The processor lacks the instructions.
+    Unavailable {
+        /// The level asked for.
+        level: SimdLevel,
+    },
+    /// Another level is active already.
+    Decided {
+        /// The level asked for.
+        level: SimdLevel,
+        /// The level that is active.
+        active: SimdLevel,
+    },
+}
+
+impl fmt::Display for SimdLevelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unavailable { level } => {
+                let available: Vec<_> = SimdLevel::available().map(SimdLevel::name).collect();
+                write!(f, "this machine has no {}: it has {}", level.name(), available.join(", "))
+            }
+            Self::Decided { level, active } => {
+                write!(
+                    f,
+                    "{} is active already and stays, {} is too late",
+                    active.name(),
+                    level.name()
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for SimdLevelError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_decided_stays() {
+        let active = SimdLevel::active();
+        assert!(
+            active.is_available() && SimdLevel::available().next() == Some(SimdLevel::Portable)
+        );
+        for &level in SimdLevel::ALL {
+            let expected = match level {
+                level if !level.is_available() => Err(SimdLevelError::Unavailable { level }),
+                level if level == active => Ok(()),
+                level => Err(SimdLevelError::Decided { level, active }),
+            };
+            assert_eq!(level.activate(), expected);
+            assert_eq!(SimdLevel::active(), active);
+        }
+    }
+
+    #[test]
+    fn an_error_names_what_there_is() {
+        let said = SimdLevelError::Unavailable { level: SimdLevel::Avx512 }.to_string();
+        assert!(said.starts_with("this machine has no avx512: it has portable"), "{said}");
     }
 }

@@ -1,6 +1,6 @@
 //! Vectors of several numbers at once, on whatever instructions the processor has: the only unsafe code of the library.
 //!
-//! Kernels are written once, generic over [`Simd`], and compiled for every [`SimdLevel`]; [`dispatch`] enters the one to use. Values of a
+//! Kernels are written once, generic over [`Simd`], and compiled for every [`SimdLevel`]; [`dispatch_on`] enters the one to use. Values of a
 //! level's vector types come from its token alone, and the token exists only where the processor has the instructions: so what is done with the
 //! values is safe.
 //!
@@ -19,7 +19,7 @@ mod vector;
 #[cfg(test)]
 mod tests;
 
-pub use level::SimdLevel;
+pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};
 
@@ -30,12 +30,6 @@ pub(crate) trait Kernel {
 
     /// Does the work. Must be `#[inline(always)]`, and so must be all functions below it that handle vectors.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
-}
-
-/// Runs a kernel on the best level that the processor has and that is not [ruled out](SimdLevel::active).
-#[inline]
-pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
-    dispatch_on(SimdLevel::active(), kernel)
 }
 
 /// Runs a kernel on a level. One that the processor lacks is replaced by the portable one.

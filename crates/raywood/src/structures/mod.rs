@@ -18,7 +18,7 @@ pub use registry::StructureKind;
 pub use structure::Structure;
 pub use wide::WideBvh;
 
-use crate::{Geometry, Hit, NodeView, Probe, Ray, StructureStats, ValidationError};
+use crate::{Geometry, Hit, NodeView, Probe, Ray, SimdLevel, StructureStats, ValidationError};
 
 /// The most levels a tree may have, the root's counted: what the traversals' stacks hold.
 pub(crate) const MAX_DEPTH: usize = 64;
@@ -53,6 +53,15 @@ pub trait AccelerationStructure: Send + Sync {
             *occluded = self.occluded(geometry, ray, &mut ());
         }
     }
+
+    /// The vector instructions that trace it; `None` if it uses none.
+    fn simd_level(&self) -> Option<SimdLevel> {
+        None
+    }
+
+    /// Has other vector instructions trace it than the [active](SimdLevel::active) ones; a level that the processor lacks counts as
+    /// portable. Nothing else changes, and nothing at all if it uses none.
+    fn set_simd_level(&mut self, _level: SimdLevel) {}
 
     /// Shows every node or cell, parents before their children: the source of statistics and of pictures of the structure.
     /// O(size of the structure).

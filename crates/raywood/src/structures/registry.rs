@@ -3,8 +3,9 @@
 use super::{
     AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh,
 };
+use crate::ValidationError;
 use crate::build::Builder;
-use crate::{BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, ValidationError};
+use crate::{BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, SimdLevel};
 
 /// Defines the kinds, their names, and the type that holds a structure of any kind.
 macro_rules! structures {
@@ -82,6 +83,18 @@ macro_rules! structures {
             fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
                 match self {
                     $(Self::$kind(structure) => structure.occluded_batch(geometry, rays, occluded),)*
+                }
+            }
+
+            fn simd_level(&self) -> Option<SimdLevel> {
+                match self {
+                    $(Self::$kind(structure) => structure.simd_level(),)*
+                }
+            }
+
+            fn set_simd_level(&mut self, level: SimdLevel) {
+                match self {
+                    $(Self::$kind(structure) => structure.set_simd_level(level),)*
                 }
             }
 

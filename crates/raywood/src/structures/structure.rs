@@ -3,7 +3,7 @@
 use super::registry::AnyStructure;
 use super::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats};
-use crate::{NodeView, SurfacePoint, ValidationError, parallel};
+use crate::{NodeView, SimdLevel, SurfacePoint, ValidationError, parallel};
 
 /// A geometry with an acceleration structure over it whose kind is chosen at run time: for comparing. [`Bvh`](crate::Bvh) is the one for
 /// everyday use.
@@ -49,6 +49,17 @@ impl<G: Geometry> Structure<G> {
     /// The geometry.
     pub fn geometry(&self) -> &G {
         &self.geometry
+    }
+
+    /// The vector instructions that trace it; `None` if structures of its kind use none.
+    pub fn simd_level(&self) -> Option<SimdLevel> {
+        self.structure.simd_level()
+    }
+
+    /// Has other vector instructions trace it than the [active](SimdLevel::active) ones, which every structure begins with: for measuring. A
+    /// level that the processor lacks counts as portable. The structure and its answers stay the same.
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.structure.set_simd_level(level);
     }
 
     /// The closest hit at `t_min <= t < t_max`; of equally near ones that with the lowest primitive number.

@@ -4,7 +4,7 @@ use super::WideBvh;
 use super::collapse::Plan;
 use super::node::{Reference, WideNode};
 use crate::geometry::{LANES, TriangleBlock};
-use crate::{BuildError, BuildOptions, Bvh2, Geometry};
+use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel};
 
 /// The most primitives in a leaf of the binary tree: half of what a leaf of the wide tree holds, so that reinsertion can tell apart what lies in it. Single
 /// primitives gain little more and take twice as many nodes.
@@ -47,7 +47,7 @@ pub(super) fn build<G: Geometry>(
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
-    Ok(WideBvh { bounds, primitives, depth, root, nodes, blocks })
+    Ok(WideBvh { bounds, primitives, depth, root, nodes, blocks, level: SimdLevel::active() })
 }
 
 /// A wide tree that is being made.

@@ -12,12 +12,12 @@ mod tests;
 
 use super::AccelerationStructure;
 use crate::geometry::TriangleBlock;
-use crate::simd::dispatch;
+use crate::simd::{SimdLevel, dispatch_on};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, ValidationError};
 use node::{Reference, WideNode};
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
-/// [`SimdLevel`](crate::SimdLevel).
+/// [`SimdLevel`].
 ///
 /// It is made from a binary tree of the surface area heuristic, improved by [reinsertion](BuildOptions::reinsertion_passes), by the collapse that the heuristic finds best (Ylitie, Karras and Laine, "Efficient
 /// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Batches are traced many rays at a time.
@@ -32,6 +32,8 @@ pub struct WideBvh {
     root: Reference,
     nodes: Vec<WideNode>,
     blocks: Vec<TriangleBlock>,
+    /// The instructions that trace it.
+    level: SimdLevel,
 }
 
 impl WideBvh {
@@ -72,19 +74,27 @@ impl AccelerationStructure for WideBvh {
         ray: &Ray,
         probe: &mut P,
     ) -> Option<Hit> {
-        dispatch(single::Closest { tree: self, geometry, ray, probe })
+        dispatch_on(self.level, single::Closest { tree: self, geometry, ray, probe })
     }
 
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
-        dispatch(single::Any { tree: self, geometry, ray, probe })
+        dispatch_on(self.level, single::Any { tree: self, geometry, ray, probe })
     }
 
     fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        dispatch(batch::Closest { tree: self, geometry, rays, hits });
+        dispatch_on(self.level, batch::Closest { tree: self, geometry, rays, hits });
     }
 
     fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
-        dispatch(batch::Any { tree: self, geometry, rays, occluded });
+        dispatch_on(self.level, batch::Any { tree: self, geometry, rays, occluded });
+    }
+
+    fn simd_level(&self) -> Option<SimdLevel> {
+        Some(self.level)
+    }
+
+    fn set_simd_level(&mut self, level: SimdLevel) {
+        self.level = if level.is_available() { level } else { SimdLevel::Portable };
     }
 
     fn visit_nodes(&self, visit: &mut dyn FnMut(NodeView)) {
