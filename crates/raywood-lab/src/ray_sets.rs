@@ -4,6 +4,7 @@ use raywood::{Hit, Ray, SurfacePoint, Vec3};
 use raywood_render::fresnel::reflect;
 use raywood_render::{CameraError, CameraRays, PreparedScene, View, shadow_ray};
 
+use crate::answers::Answer;
 use crate::rng::Rng;
 
 /// The kinds of rays, from the most coherent to the least.
@@ -63,6 +64,25 @@ impl RaySet {
     pub fn sample(&self, count: usize) -> Vec<usize> {
         let count = count.min(self.rays.len());
         (0..count).map(|i| i * self.rays.len() / count).collect()
+    }
+}
+
+/// A set of rays in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RaySetSummary {
+    /// What rays they are.
+    pub kind: RayKind,
+    /// How many.
+    pub rays: usize,
+    /// How many of them hit something.
+    pub hits: usize,
+}
+
+impl RaySetSummary {
+    /// Of a set and the answers to its rays.
+    pub(crate) fn new(set: &RaySet, answers: &[Answer]) -> Self {
+        let hits = answers.iter().filter(|answer| answer.hits()).count();
+        Self { kind: set.kind, rays: set.rays.len(), hits }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Structures compared on the same rays of the same scene, in the same run.
 
-mod disagreement;
+mod error;
 mod run;
 
 use raywood::{Counts, StructureKind, StructureStats};
 
-use crate::{RayKind, Timing};
-pub use disagreement::{Answer, CompareError, Mismatch};
+use crate::{RayKind, RaySetSummary, Timing};
+pub use error::CompareError;
 pub use run::{SceneStructure, compare};
 
 /// What is compared, and how thoroughly.
@@ -40,17 +40,6 @@ pub struct Comparison {
     pub ray_sets: Vec<RaySetSummary>,
     /// The structures, in the order asked for.
     pub structures: Vec<StructureReport>,
-}
-
-/// A set of rays in numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RaySetSummary {
-    /// What rays they are.
-    pub kind: RayKind,
-    /// How many.
-    pub rays: usize,
-    /// How many of them hit something.
-    pub hits: usize,
 }
 
 /// A structure in numbers.

@@ -4,22 +4,17 @@ use rayon::prelude::*;
 use raywood::{BuildOptions, Counts, Geometry, Ray, Structure, StructureKind};
 use raywood_render::{PreparedScene, Surfaces, View};
 
-use super::{Answer, CompareError, CompareOptions, Comparison, Mismatch};
-use super::{RaySetSummary, StructureReport, Traces};
+use super::{CompareError, CompareOptions, Comparison, RaySetSummary, StructureReport, Traces};
+use crate::answers::{Answer, answers, check_equal};
 use crate::ray_sets::{RayKind, RaySet, ray_sets};
 use crate::timing::{Timing, seconds, take_turns};
+use crate::tracing::{affordable, trace};
 
 /// A structure that is built this often is built no more.
 const BUILDS: usize = 3;
 
 /// Nor is one whose builds have taken so many seconds together.
 const BUILD_SECONDS: f64 = 4.0;
-
-/// A round in which a structure traces a set of rays shall not take much longer; a slower structure traces a sample of the set.
-const ROUND_SECONDS: f64 = 0.2;
-
-/// The rays by which the speed of a structure is guessed, for each thread.
-const PILOT_RAYS: usize = 16;
 
 /// Builds the structures over the scene and has each trace the same rays, on the threads of the current rayon pool.
 ///
@@ -78,11 +73,8 @@ pub fn compare<'a>(
         }
     }
 
-    let ray_sets = sets.iter().zip(&expected).map(|(set, expected)| RaySetSummary {
-        kind: set.kind,
-        rays: set.rays.len(),
-        hits: expected.iter().filter(|answer| answer.hits()).count(),
-    });
+    let ray_sets =
+        sets.iter().zip(&expected).map(|(set, answers)| RaySetSummary::new(set, answers));
     let comparison = Comparison {
         primitives: surfaces.len(),
         threads: rayon::current_num_threads(),
@@ -121,28 +113,6 @@ fn build<'a>(
     Ok((structures, times.into_iter().map(Timing::new).collect()))
 }
 
-/// How many of the rays the structure can trace in a round: all, but of a slow structure only what a few rays make expect.
-fn affordable(structure: &SceneStructure<'_>, set: &RaySet) -> usize {
-    let all = set.rays.len();
-    let threads = rayon::current_num_threads();
-    // First a ray a thread, which even the slowest can trace in time. Then more, if that was no trouble; and again: a machine that does other
-    // things too makes a few rays look slow now and then, but not every time.
-    let mut guess = threads;
-    for few in [threads, PILOT_RAYS * threads, PILOT_RAYS * threads, PILOT_RAYS * threads] {
-        let pilot: Vec<_> = set.sample(few).into_iter().map(|index| set.rays[index]).collect();
-        let per_ray = trace(structure, set.kind, &pilot) / pilot.len().max(1) as f64;
-        guess = guess.max((ROUND_SECONDS / per_ray.max(1e-9)) as usize);
-        // Few and cold, they are slower than most.
-        if 4 * guess >= all {
-            return all;
-        }
-        if guess < few {
-            break;
-        }
-    }
-    guess
-}
-
 /// Holds the structure's answers to a sample of the rays, given by number, against the reference's.
 fn check(
     reference: &SceneStructure<'_>,
@@ -152,41 +122,11 @@ fn check(
     sample: &[usize],
 ) -> Result<(), CompareError> {
     let rays: Vec<_> = sample.iter().map(|&index| set.rays[index]).collect();
+    let expected: Vec<_> = sample.iter().map(|&index| expected[index]).collect();
     let found = answers(structure, set.kind, &rays);
-    let pairs = found.into_iter().zip(sample).zip(&rays);
-    for ((found, &index), &ray) in pairs {
-        if found != expected[index] {
-            let structures = [reference.kind(), structure.kind()];
-            let answers = [expected[index], found];
-            let mismatch = Mismatch { kind: set.kind, ray, structures, answers };
-            return Err(CompareError::Mismatch(Box::new(mismatch)));
-        }
-    }
-    Ok(())
-}
-
-/// What the structure says of each ray.
-fn answers(structure: &SceneStructure<'_>, kind: RayKind, rays: &[Ray]) -> Vec<Answer> {
-    if kind.any_hit() {
-        let mut blocked = vec![false; rays.len()];
-        structure.occluded_batch(rays, &mut blocked);
-        blocked.into_iter().map(Answer::Any).collect()
-    } else {
-        let mut hits = vec![None; rays.len()];
-        structure.intersect_batch(rays, &mut hits);
-        hits.into_iter().map(Answer::Closest).collect()
-    }
-}
-
-/// The seconds that the structure takes for the rays.
-fn trace(structure: &SceneStructure<'_>, kind: RayKind, rays: &[Ray]) -> f64 {
-    if kind.any_hit() {
-        let mut blocked = vec![false; rays.len()];
-        seconds(|| structure.occluded_batch(rays, &mut blocked)).0
-    } else {
-        let mut hits = vec![None; rays.len()];
-        seconds(|| structure.intersect_batch(rays, &mut hits)).0
-    }
+    let [expecting, finding] = [reference, structure].map(|structure| structure.kind().name());
+    check_equal(set.kind, &rays, (expecting, &expected), (finding, &found))
+        .map_err(CompareError::Mismatch)
 }
 
 /// What the structure visits and tests for the rays, all together.

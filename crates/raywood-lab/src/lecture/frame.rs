@@ -8,6 +8,7 @@ use raywood::{Geometry, Ray, Structure};
 use super::measure::spread_text;
 use super::{Entry, Findings, Judgement, Lab, LectureError, Verdict};
 use crate::figures::{Axis, BarChart, BarSeries, Cell, Chart, Table};
+use crate::frame_budget::{CYCLES_PER_RAY, RAYS_PER_SECOND};
 use crate::ray_sets::RayKind;
 use crate::timing::{Timing, seconds, take_turns};
 
@@ -19,10 +20,8 @@ pub(super) const ENTRY: Entry = Entry {
     measure,
 };
 
-/// Pictures of 1280 x 800 pixels of 10 rays, 30 a second.
-const RAYS_PER_SECOND: f64 = 1280.0 * 800.0 * 10.0 * 30.0;
-/// 80 cycles at 3 GHz, in nanoseconds.
-const BUDGET: f64 = 80.0 / 3.0;
+/// The lecture's cores have 3 GHz: the budget of a ray in nanoseconds.
+const BUDGET: f64 = CYCLES_PER_RAY / 3.0;
 
 /// Rays of a kind on one core.
 #[derive(Clone, Debug)]
