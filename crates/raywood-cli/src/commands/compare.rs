@@ -8,8 +8,9 @@ use raywood_render::{HeatMap, HeatQuantity, PreparedScene, Progress, RenderOptio
 use raywood_scene::{Camera, Scene};
 
 use super::thread_pool;
-use crate::exporters::html::{HeatMaps, Map};
-use crate::exporters::{self, Compared, Format};
+use crate::exporters::Format;
+use crate::exporters::comparison::Compared;
+use crate::exporters::comparison::html::{self, HeatMaps, Map};
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
 use crate::parse::{structure_kind, whole_number};
@@ -104,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let maps = during_steps(|step| {
             pool.install(|| heat_maps(&scene, structures, &view.camera, &comparison, step))
         })?;
-        let text = exporters::html::write(&compared, &maps)?;
+        let text = html::write(&compared, &maps)?;
         page.write(|writer| writer.write_all(text.as_bytes()))?;
     }
     print::result(&args.format.write(&compared))

@@ -1,52 +1,20 @@
-//! Everything, as JSON.
+//! JSON: what several reports have in common.
 
 use raywood::{StructureKind, StructureStats};
-use raywood_lab::{StructureReport, Timing, Traces};
+use raywood_lab::{RaySetSummary, Timing};
 use serde_json::{Value, json};
 
-use super::Compared;
-
-pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
-    let ray_sets = comparison.ray_sets.iter().map(|set| {
-        json!({
-            "kind": set.kind.name(), "description": set.kind.description(),
-            "rays": set.rays, "hits": set.hits,
-        })
-    });
-    let value = json!({
-        "scene": scene,
-        "primitives": comparison.primitives,
-        "threads": comparison.threads,
-        "ray_sets": ray_sets.collect::<Vec<_>>(),
-        "structures": comparison.structures.iter().map(report).collect::<Vec<_>>(),
-    });
-    format!("{value:#}\n")
-}
-
-fn report(StructureReport { kind, build, stats, traces: sets }: &StructureReport) -> Value {
-    let mut value = structure(*kind, stats);
-    value["build_seconds"] = timing(build);
-    value["rays"] = sets.iter().map(traces).collect();
-    value
-}
-
-fn traces(traces: &Traces) -> Value {
-    let Traces { kind, rays, counts, timing: seconds } = traces;
-    json!({
-        "kind": kind.name(),
-        "rays": rays,
-        "million_rays_per_second": traces.million_rays_per_second(),
-        "seconds": timing(seconds),
-        "per_ray": {
-            "nodes": traces.per_ray(counts.nodes),
-            "boxes": traces.per_ray(counts.boxes),
-            "primitives": traces.per_ray(counts.primitives),
-        },
-    })
-}
-
-fn timing(timing: &Timing) -> Value {
+/// A time that was measured.
+pub(super) fn timing(timing: &Timing) -> Value {
     json!({ "median": timing.median(), "spread": timing.spread(), "rounds": timing.rounds() })
+}
+
+/// A set of rays.
+pub(super) fn ray_set(set: &RaySetSummary) -> Value {
+    json!({
+        "kind": set.kind.name(), "description": set.kind.description(),
+        "rays": set.rays, "hits": set.hits,
+    })
 }
 
 /// Statistics of a structure, as every command prints them for machines.

@@ -1,19 +1,14 @@
 //! Tables in Markdown, as GitHub and others read it.
 
-use super::Compared;
-use super::contents::{notes, ray_sets, tables};
-use crate::print::thousands;
+use super::Contents;
 use crate::report::values::cell;
 
-pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
-    let primitives = thousands(comparison.primitives as u64);
-    let scene = escaped(scene);
-    let mut text =
-        format!("### {scene}: {primitives} primitives, {} threads\n\n", comparison.threads);
-    for line in ray_sets(comparison) {
-        text += &format!("- {line}\n");
+pub(super) fn write(Contents { heading, facts, tables, notes }: &Contents) -> String {
+    let mut text = format!("### {}\n\n", escaped(heading));
+    for fact in facts {
+        text += &format!("- {fact}\n");
     }
-    for table in tables(comparison) {
+    for table in tables {
         text += &format!("\n{}:\n\n| {} |\n", table.caption, table.columns.join(" | "));
         text += &format!("| --- |{}\n", " ---: |".repeat(table.columns.len() - 1));
         for row in &table.rows {
@@ -22,7 +17,7 @@ pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
         }
     }
     text += "\n";
-    for note in notes(comparison) {
+    for note in notes {
         text += &format!("{note}\n");
     }
     text

@@ -1,22 +1,27 @@
-//! How a comparison is written: one format per file. To add one, write its file and name it here.
+//! How what was measured is written: one kind of report per folder, one format per file. A new report implements [`Export`]; a new format
+//! is a line in [`Format`].
 
+pub(crate) mod comparison;
 mod contents;
-mod csv;
-pub(crate) mod html;
 mod json;
 mod markdown;
 mod table;
 
-use raywood_lab::Comparison;
+use serde_json::Value;
 
+pub(crate) use contents::Contents;
 pub(crate) use json::structure;
 
-/// A comparison and what it was made of.
-pub(crate) struct Compared<'a> {
-    /// The scene's name.
-    pub(crate) scene: &'a str,
-    /// What was found.
-    pub(crate) comparison: &'a Comparison,
+/// What can be written in every format.
+pub(crate) trait Export {
+    /// What people read, rounded.
+    fn contents(&self) -> Contents;
+
+    /// Lines of comma-separated values, the first with their names.
+    fn csv(&self) -> String;
+
+    /// Everything.
+    fn json(&self) -> Value;
 }
 
 /// The formats for standard output.
@@ -26,20 +31,20 @@ pub(crate) enum Format {
     Table,
     /// For pasting into a page
     Markdown,
-    /// One line per structure and kind of rays
+    /// One line per thing that was timed
     Csv,
     /// Everything
     Json,
 }
 
 impl Format {
-    /// The comparison in this format, with a line's end at the end.
-    pub(crate) fn write(self, compared: &Compared<'_>) -> String {
+    /// The report in this format, with a line's end at the end.
+    pub(crate) fn write(self, report: &impl Export) -> String {
         match self {
-            Self::Table => table::write(compared),
-            Self::Markdown => markdown::write(compared),
-            Self::Csv => csv::write(compared),
-            Self::Json => json::write(compared),
+            Self::Table => table::write(&report.contents()),
+            Self::Markdown => markdown::write(&report.contents()),
+            Self::Csv => report.csv(),
+            Self::Json => format!("{:#}\n", report.json()),
         }
     }
 }

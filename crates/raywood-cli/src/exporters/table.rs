@@ -2,23 +2,26 @@
 
 use raywood_lab::figures::{Cell, Table};
 
-use super::Compared;
-use super::contents::{notes, ray_sets, tables};
-use crate::print::thousands;
+use super::Contents;
+use crate::print::wrapped;
 use crate::report::values::cell;
 
-pub(super) fn write(Compared { scene, comparison }: &Compared<'_>) -> String {
-    let primitives = thousands(comparison.primitives as u64);
-    let mut text = format!("{scene}: {primitives} primitives, {} threads\n", comparison.threads);
-    for line in ray_sets(comparison) {
-        text += &format!("  {line}\n");
+/// Text is no wider than this.
+const WIDTH: usize = 80;
+
+pub(super) fn write(Contents { heading, facts, tables, notes }: &Contents) -> String {
+    let mut text = format!("{heading}\n");
+    for fact in facts {
+        for (number, line) in wrapped(fact, WIDTH - 4).iter().enumerate() {
+            text += &format!("  {}{line}\n", if number == 0 { "" } else { "  " });
+        }
     }
-    for table in tables(comparison) {
-        text += &format!("\n{}\n{}", table.caption, lines(&table));
+    for table in tables {
+        text += &format!("\n{}\n{}", table.caption, lines(table));
     }
     text += "\n";
-    for note in notes(comparison) {
-        text += &format!("{note}\n");
+    for note in notes {
+        text += &(wrapped(note, WIDTH).join("\n") + "\n");
     }
     text
 }

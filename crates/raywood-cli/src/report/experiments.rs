@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::{charts, page};
 use crate::failure::Failure;
+use crate::print::wrapped;
 
 /// What pages of experiments need beside the common style.
 const STYLE: &str = include_str!("experiments.css");
@@ -111,21 +112,6 @@ pub(crate) fn as_text(experiments: &[Experiment]) -> String {
         }
     }
     text
-}
-
-/// A text in lines of at most so many characters, longer ones only where a single word is.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 /// Everything for machines.
