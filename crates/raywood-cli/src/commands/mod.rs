@@ -1,5 +1,6 @@
 //! The subcommands, one per file. To add one, write its file and name it here.
 
+mod bench;
 mod compare;
 mod info;
 mod lecture;
@@ -15,6 +16,7 @@ use crate::failure::Failure;
 pub(crate) enum Command {
     Render(render::Args),
     Compare(compare::Args),
+    Bench(bench::Args),
     Info(info::Args),
     Lecture(lecture::Args),
     Scenes(scenes::Args),
@@ -26,6 +28,7 @@ impl Command {
         match self {
             Self::Render(args) => render::run(args),
             Self::Compare(args) => compare::run(args),
+            Self::Bench(args) => bench::run(args),
             Self::Info(args) => info::run(args),
             Self::Lecture(args) => lecture::run(args),
             Self::Scenes(args) => scenes::run(args),

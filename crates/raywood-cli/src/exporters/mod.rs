@@ -1,6 +1,7 @@
 //! How what was measured is written: one kind of report per folder, one format per file. A new report implements [`Export`]; a new format
 //! is a line in [`Format`].
 
+pub(crate) mod benchmark;
 pub(crate) mod comparison;
 mod contents;
 mod json;
