@@ -11,6 +11,7 @@ mod print;
 mod progress_bar;
 mod report;
 mod scene_source;
+mod simd_args;
 mod view_args;
 
 use std::process::ExitCode;

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use raywood::{StructureKind, Vec3};
+use raywood::{SimdLevel, StructureKind, Vec3};
 use raywood_render::HeatQuantity;
 
 /// A point or direction, `X,Y,Z`.
@@ -81,6 +81,14 @@ pub(crate) fn whole_number(text: &str, least: u32, most: u32) -> Result<u32, Str
 pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
     StructureKind::from_name(text).ok_or_else(|| {
         let names: Vec<_> = StructureKind::ALL.iter().map(|kind| kind.name()).collect();
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+/// The name of a level of vector instructions.
+pub(crate) fn simd_level(text: &str) -> Result<SimdLevel, String> {
+    SimdLevel::from_name(text).ok_or_else(|| {
+        let names: Vec<_> = SimdLevel::ALL.iter().map(|level| level.name()).collect();
         format!("expected one of {}", names.join(", "))
     })
 }

@@ -14,6 +14,7 @@ use crate::parse::{Size, structure_kind, whole_number};
 use crate::print;
 use crate::progress_bar::{during_step, during_steps};
 use crate::scene_source::{self, Loaded};
+use crate::simd_args::SimdArgs;
 use crate::view_args::ViewArgs;
 
 /// Measure how fast this machine traces rays on a scene.
@@ -60,6 +61,9 @@ pub(crate) struct Args {
     format: Format,
 
     #[command(flatten)]
+    simd: SimdArgs,
+
+    #[command(flatten)]
     view: ViewArgs,
 
     /// Refuse what is otherwise mended
@@ -68,6 +72,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    args.simd.activate()?;
     let Size { width, height } = args.size;
     let picture = RenderOptions { width, height, ..RenderOptions::default() };
     picture.validate().map_err(Failure::bad_input)?;

@@ -17,6 +17,7 @@ use crate::parse::{structure_kind, whole_number};
 use crate::print;
 use crate::progress_bar::{during_step, during_steps};
 use crate::scene_source::{self, Loaded};
+use crate::simd_args::SimdArgs;
 use crate::view_args::ViewArgs;
 
 /// Compare the acceleration structures on a scene.
@@ -59,6 +60,9 @@ pub(crate) struct Args {
     threads: Option<u16>,
 
     #[command(flatten)]
+    simd: SimdArgs,
+
+    #[command(flatten)]
     view: ViewArgs,
 
     /// Refuse what is otherwise mended
@@ -67,6 +71,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    args.simd.activate()?;
     let mut options = CompareOptions {
         rays: args.rays as usize,
         rounds: args.rounds as usize,

@@ -1,6 +1,6 @@
 //! `raywood info`: what is in a scene, and what its structure is like.
 
-use raywood::{Geometry, StructureKind, StructureStats};
+use raywood::{Geometry, SimdLevel, StructureKind, StructureStats};
 use raywood_render::PreparedScene;
 use raywood_scene::{LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
@@ -12,6 +12,7 @@ use crate::parse::structure_kind;
 use crate::print::{self, thousands};
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
+use crate::simd_args::SimdArgs;
 
 /// Tell what a scene holds, and what its structure is like.
 #[derive(clap::Args)]
@@ -28,6 +29,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME", value_parser = structure_kind)]
     structure: Option<StructureKind>,
 
+    #[command(flatten)]
+    simd: SimdArgs,
+
     /// Refuse what is otherwise mended with a warning
     #[arg(long)]
     strict: bool,
@@ -38,6 +42,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    args.simd.activate()?;
     let pool = thread_pool(None)?;
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
@@ -47,14 +52,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let prepared = during_step("building the structure", || pool.install(prepare))
         .map_err(Failure::bad_input)?;
     let stats = prepared.structure().stats();
+    let level = prepared.structure().simd_level();
     if args.json {
-        print::json(&as_json(&loaded, kind, &stats))
+        print::json(&as_json(&loaded, kind, &stats, level))
     } else {
-        print::result(&as_text(&loaded, kind, &stats))
+        print::result(&as_text(&loaded, kind, &stats, level))
     }
 }
 
-fn as_text(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &StructureStats) -> String {
+fn as_text(
+    Loaded { scene, time }: &Loaded,
+    kind: StructureKind,
+    stats: &StructureStats,
+    level: Option<SimdLevel>,
+) -> String {
     let mesh = &scene.mesh;
     let bounds = scene.bounds();
     let point = |p: raywood::Vec3| format!("({}, {}, {})", p.x, p.y, p.z);
@@ -78,6 +89,7 @@ fn as_text(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &Structu
         line("bounds", &format!("{} to {}", point(bounds.min), point(bounds.max)));
     }
     line("structure", &format!("{}: {stats}", kind.name()));
+    line("traced by", instructions(level));
 
     line("materials", &scene.materials.len().to_string());
     for material in &scene.materials {
@@ -104,6 +116,11 @@ fn as_text(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &Structu
         );
     }
     text
+}
+
+/// The instructions in words.
+fn instructions(level: Option<SimdLevel>) -> &'static str {
+    level.map_or("scalar instructions", |level| level.name())
 }
 
 fn name_or(name: &str) -> &str {
@@ -146,7 +163,12 @@ fn describe(material: &Material) -> String {
     if parts.is_empty() { "black".to_owned() } else { parts.join(", ") }
 }
 
-fn as_json(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &StructureStats) -> Value {
+fn as_json(
+    Loaded { scene, time }: &Loaded,
+    kind: StructureKind,
+    stats: &StructureStats,
+    level: Option<SimdLevel>,
+) -> Value {
     let bounds = scene.bounds();
     json!({
         "scene": scene.name,
@@ -167,6 +189,7 @@ fn as_json(Loaded { scene, time }: &Loaded, kind: StructureKind, stats: &Structu
         })).collect::<Vec<_>>(),
         "warnings": scene.warnings,
         "structure": exporters::structure(kind, stats),
+        "simd": level.map(SimdLevel::name),
     })
 }
 

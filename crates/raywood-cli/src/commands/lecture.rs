@@ -14,6 +14,7 @@ use crate::print;
 use crate::progress_bar::during_step;
 use crate::report::experiments::{self, Run};
 use crate::scene_source;
+use crate::simd_args::SimdArgs;
 
 /// Measure what is said about ray tracing structures, claim by claim.
 #[derive(clap::Args)]
@@ -46,6 +47,9 @@ pub(crate) struct Args {
     /// Most threads to use, else all cores
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    #[command(flatten)]
+    simd: SimdArgs,
 }
 
 /// How results are printed.
@@ -67,6 +71,7 @@ fn experiment(id: &str) -> Result<&'static Entry, String> {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // Say what is wrong with the request before any work is done for it.
+    args.simd.activate()?;
     let output = args.html.as_deref().map(OutputFile::new).transpose()?;
     let started = Instant::now();
     let pool = thread_pool(args.threads.map(usize::from))?;

@@ -14,6 +14,8 @@ use crate::failure::Failure;
 /// What to do.
 #[derive(Subcommand)]
 pub(crate) enum Command {
+    // Its short help fills a screen already.
+    #[command(mut_arg("simd", |arg| arg.hide_short_help(true)))]
     Render(render::Args),
     Compare(compare::Args),
     Bench(bench::Args),

@@ -17,6 +17,7 @@ use crate::picture::{self, Bounds, Heat, Request};
 use crate::print::{self, thousands};
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
+use crate::simd_args::SimdArgs;
 use crate::view_args::ViewArgs;
 
 /// Render a model file or a built-in scene to a PNG picture.
@@ -55,6 +56,9 @@ pub(crate) struct Args {
     /// Threads to use, else all cores
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    #[command(flatten)]
+    simd: SimdArgs,
 
     #[command(flatten)]
     view: ViewArgs,
@@ -117,6 +121,7 @@ struct Report<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // Say what is wrong with the request before any work is done for it.
+    args.simd.activate()?;
     let options = RenderOptions {
         width: args.size.width,
         height: args.size.height,
