@@ -51,7 +51,7 @@ mod validate;
 mod vec3;
 
 pub use aabb::Aabb;
-pub use build::{BuildOptions, Builder};
+pub use build::{BuildOptions, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use error::BuildError;
 pub use geometry::{

@@ -12,5 +12,5 @@ mod sah_binned;
 mod sah_sweep;
 
 pub use builder::Builder;
-pub use options::BuildOptions;
+pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;

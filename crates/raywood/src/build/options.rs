@@ -34,6 +34,19 @@ pub struct BuildOptions {
     pub octree_max_depth: usize,
     /// By which share, 0 to 1, a kD-tree's split counts as cheaper when it cuts off empty space.
     pub kd_empty_bonus: f32,
+    /// How rays are tested against triangles by [`WideBvh`](crate::WideBvh). All other structures are always watertight.
+    pub triangle_test: TriangleTest,
+}
+
+/// How rays are tested against triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TriangleTest {
+    /// No ray slips between triangles that share an edge, and hits are the same for every structure, to the bit.
+    #[default]
+    Watertight,
+    /// Rays may slip between triangles that share an edge, and hits may differ from those of other structures in the last digits. Kept to compare speeds:
+    /// other libraries test like this by default.
+    Fast,
 }
 
 impl Default for BuildOptions {
@@ -49,6 +62,7 @@ impl Default for BuildOptions {
             octree_leaf_size: 8,
             octree_max_depth: crate::structures::octree::MAX_LEVELS,
             kd_empty_bonus: 0.2,
+            triangle_test: TriangleTest::Watertight,
         }
     }
 }
@@ -74,6 +88,7 @@ impl BuildOptions {
             octree_leaf_size: self.octree_leaf_size.max(1),
             octree_max_depth: self.octree_max_depth.clamp(1, crate::structures::octree::MAX_LEVELS),
             kd_empty_bonus: share(self.kd_empty_bonus),
+            triangle_test: self.triangle_test,
         }
     }
 

@@ -27,34 +27,37 @@ pub struct PreparedRay {
     pub(super) shear: [f32; 3],
 }
 
+/// The axes in an order in which the first, second or third is last, by that axis and whether the direction runs backwards along it: the others then swap,
+/// which keeps the orientation of triangles (Woop, Benthin and Wald 2013).
+static AXES: [[usize; 3]; 6] = [[1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1], [0, 1, 2], [1, 0, 2]];
+
 impl PreparedRay {
     /// Prepares a ray, or tells by `None` that it is not [valid](Ray::is_valid) and so hits nothing.
     #[inline]
     pub fn new(ray: &Ray) -> Option<Self> {
-        if !ray.is_valid() {
-            return None;
-        }
-        let d = ray.direction;
+        ray.is_valid().then(|| Self::of_valid(ray))
+    }
 
-        // Woop, Benthin and Wald 2013: the largest axis becomes z; the other two swap when it points backwards,
-        // which keeps the orientation of triangles.
-        let z = d.abs().max_axis();
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if d[z] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
-        }
-        let reciprocal = Vec3::new(1.0 / d.x, 1.0 / d.y, 1.0 / d.z);
-        Some(Self {
+    /// Prepares a ray that is valid; without branches on the direction, which nobody could predict.
+    #[inline(always)]
+    pub(crate) fn of_valid(ray: &Ray) -> Self {
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        let [dx, dy, dz] = d.map(f32::abs);
+        let main = usize::from(!(dx >= dy && dx >= dz)) * (1 + usize::from(dy < dz));
+        let axes = AXES[2 * main + usize::from(d[main] < 0.0)];
+        let [x, y, z] = axes;
+        let reciprocal = d.map(|coordinate| 1.0 / coordinate);
+        Self {
             origin: ray.origin,
-            direction: d,
+            direction: ray.direction,
             t_min: ray.t_min,
             t_max: ray.t_max,
-            reciprocal,
-            entry_corners: reciprocal.to_array().map(|r| usize::from(r < 0.0)),
-            axes: [x, y, z],
-            permuted_origin: [ray.origin[x], ray.origin[y], ray.origin[z]],
-            shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
-        })
+            reciprocal: reciprocal.into(),
+            entry_corners: reciprocal.map(|r| usize::from(r < 0.0)),
+            axes,
+            permuted_origin: [o[x], o[y], o[z]],
+            shear: [d[x] / d[z], d[y] / d[z], reciprocal[z]],
+        }
     }
 
     /// Whether a distance lies in the ray's interval. NaN does not.

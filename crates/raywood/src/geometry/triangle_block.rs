@@ -2,10 +2,13 @@
 
 use super::watertight::{
     DEPTH_ERROR, DISTANCE_TOLERANCE, EDGE_ERROR, GREATEST_DETERMINANT, LEAST_DETERMINANT,
+    intersect_triangle,
 };
 use super::{PreparedRay, PrimitiveHit};
+use crate::Aabb;
+use crate::Vec3;
 use crate::simd::{Float, Simd};
-use crate::{Aabb, Vec3};
+use crate::traverse::slab::{SLACK, inside_own_bounds};
 
 /// How many triangles a block holds.
 pub(crate) const LANES: usize = 8;
@@ -42,8 +45,8 @@ impl BlockHits {
 
     /// The hit in a lane that is certainly hit.
     #[inline(always)]
-    pub(crate) fn get(&self, lane: usize) -> PrimitiveHit {
-        PrimitiveHit { t: self.t[lane], u: self.u[lane], v: self.v[lane] }
+    pub(crate) fn get(&self, lane: usize, t: f32) -> PrimitiveHit {
+        PrimitiveHit { t, u: self.u[lane], v: self.v[lane] }
     }
 }
 
@@ -66,11 +69,55 @@ impl TriangleBlock {
             .map(|corner| Vec3::new(corner[0][lane], corner[1][lane], corner[2][lane]))
     }
 
-    /// The box around the triangle in a lane.
+    /// One coordinate of the corners of one number, of all triangles.
     #[inline(always)]
-    pub(crate) fn bounds(&self, lane: usize) -> Aabb {
+    pub(crate) fn coordinates(&self, corner: usize, axis: usize) -> &[f32; LANES] {
+        &self.corners[corner][axis]
+    }
+
+    /// The hit of a ray with the triangle in a lane, as every traversal sees it.
+    pub(crate) fn intersect_one(&self, ray: &PreparedRay, lane: usize) -> Option<PrimitiveHit> {
         let [a, b, c] = self.corners(lane);
-        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+        let bounds = Aabb { min: a.min(b).min(c), max: a.max(b).max(c) };
+        inside_own_bounds(ray, intersect_triangle(ray, a, b, c)?, &bounds)
+    }
+
+    /// The distances of hits.
+    #[inline(always)]
+    pub(crate) fn distances<S: Simd>(simd: S, hits: &BlockHits) -> S::F8 {
+        simd.load8(&hits.t)
+    }
+
+    /// The hits as every traversal sees them: the steps of `inside_own_bounds` for the boxes around all triangles, each operation the same. Which lanes
+    /// are left, and their distances.
+    #[inline(always)]
+    pub(crate) fn inside_own_bounds<S: Simd>(
+        &self,
+        simd: S,
+        ray: &PreparedRay,
+        hits: &BlockHits,
+    ) -> (u32, S::F8) {
+        let (t_min, t_max) = (simd.splat8(ray.t_min), simd.splat8(ray.t_max));
+        let (mut near, mut far) = (t_min, t_max);
+        for axis in 0..3 {
+            // The least of the differences is the difference to the least: rounding is monotone.
+            let origin = simd.splat8(ray.origin[axis]);
+            let [a, b, c] = [
+                simd.load8(&self.corners[0][axis]) - origin,
+                simd.load8(&self.corners[1][axis]) - origin,
+                simd.load8(&self.corners[2][axis]) - origin,
+            ];
+            let least = a.smaller(b).smaller(c);
+            let greatest = a.larger(b).larger(c);
+            let backwards = ray.entry_corners[axis] == 1;
+            let reciprocal = simd.splat8(ray.reciprocal[axis]);
+            near = (greatest.where_else(backwards, least) * reciprocal).larger(near);
+            far = (least.where_else(backwards, greatest) * reciprocal).smaller(far);
+        }
+        let t = simd.load8(&hits.t).smaller(far).larger(near);
+        let end = far + far.abs() * simd.splat8(SLACK);
+        let inside = near.less_or_equal(end) & t_min.less_or_equal(t) & t.less(t_max);
+        (hits.hit & inside, t)
     }
 
     /// The corners of one number, moved and sheared as `watertight.rs` does it.
@@ -103,14 +150,11 @@ impl TriangleBlock {
         let e2 = b[0] * a[1] - b[1] * a[0];
         let least = e0.smaller(e1).smaller(e2);
         let greatest = e0.larger(e1).larger(e2);
-        let across = a[0].abs().larger(simd.splat8(0.0));
-        let across = b[0].abs().larger(a[1].abs().larger(across));
-        let across = c[0].abs().larger(b[1].abs().larger(across));
-        let across = c[1].abs().larger(across);
-        let along = a[2].abs().larger(simd.splat8(0.0));
-        let along = c[2].abs().larger(b[2].abs().larger(along));
-        let edge_error =
-            simd.splat8(EDGE_ERROR) * across * (across + along) + simd.splat8(f32::MIN_POSITIVE);
+        let across = a[0].larger_magnitude(a[1]).larger_magnitude(b[0].larger_magnitude(b[1]));
+        let across = across.larger_magnitude(c[0].larger_magnitude(c[1]));
+        let along = a[2].larger_magnitude(b[2]).larger_magnitude(c[2]);
+        let reach = across + along;
+        let edge_error = simd.splat8(EDGE_ERROR) * across * reach + simd.splat8(f32::MIN_POSITIVE);
         let negative_error = simd.splat8(0.0) - edge_error;
         let below = least.less(negative_error);
         let above = edge_error.less(greatest);
@@ -126,9 +170,8 @@ impl TriangleBlock {
         let reciprocal = simd.splat8(1.0) / determinant;
         let (w, u, v) = (e0 * reciprocal, e1 * reciprocal, e2 * reciprocal);
         let z = w * a[2] + u * b[2] + v * c[2];
-        let z_error = simd.splat8(DEPTH_ERROR)
-            * along
-            * (across * across * reciprocal.abs() + simd.splat8(1.0));
+        let shape = across * across * reciprocal.abs() + simd.splat8(1.0);
+        let z_error = simd.splat8(DEPTH_ERROR) * along * shape;
         let inexact = (simd.splat8(DISTANCE_TOLERANCE) * z.abs()).less(z_error);
 
         // A trusted distance is off by less than the tolerance: twice that beyond the limit is too far, whatever rounding did.
@@ -137,12 +180,78 @@ impl TriangleBlock {
         let accepted = simd.splat8(ray.t_min).less_or_equal(t)
             & t.less(simd.splat8(ray.t_max))
             & t.less_or_equal(simd.splat8(far_enough));
+        let t_error = reach * shape * simd.splat8(2.0 * DEPTH_ERROR * ray.shear[2].abs());
+        let beyond = ((t + t_error).less(simd.splat8(ray.t_min))
+            | simd.splat8(far_enough).less(t - t_error))
+            & reach.less(across * simd.splat8(1024.0))
+            & inside;
         BlockHits {
             hit: inside & !inexact & accepted,
-            doubtful: possible & !(inside & !inexact),
+            doubtful: possible & !(inside & !inexact) & !beyond,
             t: t.to_array(),
             u: u.to_array(),
             v: v.to_array(),
         }
     }
+
+    /// Tests the triangles in the given lanes by Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997: rays may slip between
+    /// triangles that share an edge. No lane is doubtful, and a hit needs no look at the triangle's own box.
+    #[inline(always)]
+    pub(crate) fn intersect_fast<S: Simd>(
+        &self,
+        simd: S,
+        ray: &PreparedRay,
+        lanes: u32,
+        limit: f32,
+    ) -> BlockHits {
+        let corner = |corner: usize| {
+            let [x, y, z] = &self.corners[corner];
+            [simd.load8(x), simd.load8(y), simd.load8(z)]
+        };
+        let ([a, b, c], d) = ([corner(0), corner(1), corner(2)], ray.direction);
+        let d = [simd.splat8(d.x), simd.splat8(d.y), simd.splat8(d.z)];
+        let o = ray.origin;
+        let o = [simd.splat8(o.x), simd.splat8(o.y), simd.splat8(o.z)];
+
+        let (e1, e2, s) = (sub(b, a), sub(c, a), sub(o, a));
+        let (p, q) = (cross(d, e2), cross(s, e1));
+        let reciprocal = simd.splat8(1.0) / dot(e1, p);
+        let (u, v, t) = (dot(s, p) * reciprocal, dot(d, q) * reciprocal, dot(e2, q) * reciprocal);
+        let zero = simd.splat8(0.0);
+        let hit = zero.less_or_equal(u)
+            & zero.less_or_equal(v)
+            & (u + v).less_or_equal(simd.splat8(1.0))
+            & simd.splat8(ray.t_min).less_or_equal(t)
+            & t.less(simd.splat8(ray.t_max))
+            & t.less_or_equal(simd.splat8(limit));
+        BlockHits {
+            hit: lanes & hit,
+            doubtful: 0,
+            t: t.to_array(),
+            u: u.to_array(),
+            v: v.to_array(),
+        }
+    }
+}
+
+/// The difference of vectors.
+#[inline(always)]
+fn sub<F: Float>([ax, ay, az]: [F; 3], [bx, by, bz]: [F; 3]) -> [F; 3] {
+    [ax - bx, ay - by, az - bz]
+}
+
+/// The vector product.
+#[inline(always)]
+fn cross<F: Float>([ax, ay, az]: [F; 3], [bx, by, bz]: [F; 3]) -> [F; 3] {
+    [
+        az.negated_mul_add(by, ay * bz),
+        ax.negated_mul_add(bz, az * bx),
+        ay.negated_mul_add(bx, ax * by),
+    ]
+}
+
+/// The scalar product.
+#[inline(always)]
+fn dot<F: Float>([ax, ay, az]: [F; 3], [bx, by, bz]: [F; 3]) -> F {
+    ax.mul_add(bx, ay.mul_add(by, az * bz))
 }

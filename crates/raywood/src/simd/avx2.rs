@@ -114,6 +114,12 @@ impl Float for F8 {
     }
 
     #[inline(always)]
+    fn negated_mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: the values came from the token.
+        Self(unsafe { _mm256_fnmadd_ps(self.0, factor.0, addend.0) })
+    }
+
+    #[inline(always)]
     fn less(self, other: Self) -> u32 {
         // SAFETY: the values came from the token.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) as u32 }
@@ -177,6 +183,12 @@ impl Float for F16 {
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let ([a, b], [c, d], [e, f]) = (self.0, factor.0, addend.0);
         Self([a.mul_add(c, e), b.mul_add(d, f)])
+    }
+
+    #[inline(always)]
+    fn negated_mul_add(self, factor: Self, addend: Self) -> Self {
+        let ([a, b], [c, d], [e, f]) = (self.0, factor.0, addend.0);
+        Self([a.negated_mul_add(c, e), b.negated_mul_add(d, f)])
     }
 
     #[inline(always)]

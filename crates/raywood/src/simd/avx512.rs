@@ -29,7 +29,7 @@ pub(crate) struct F16(__m512);
 pub(crate) struct F8(__m256);
 
 macro_rules! float {
-    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $fma:ident, $cmp:ident, $blend:ident, $least:path, $greatest:path) => {
+    ($type:ident, $array:ty, $add:ident, $sub:ident, $mul:ident, $div:ident, $min:ident, $max:ident, $abs:expr, $fma:ident, $fnma:ident, $cmp:ident, $range:ident, $blend:ident, $least:path, $greatest:path) => {
         float!(@operator $type, Add, add, $add);
         float!(@operator $type, Sub, sub, $sub);
         float!(@operator $type, Mul, mul, $mul);
@@ -57,9 +57,27 @@ macro_rules! float {
             }
 
             #[inline(always)]
+            fn larger_magnitude(self, other: Self) -> Self {
+                // SAFETY: the values came from the token. (Operation 11 is the largest absolute value.)
+                Self(unsafe { $range::<11>(self.0, other.0) })
+            }
+
+            #[inline(always)]
+            fn where_else(self, chosen: bool, other: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $blend(if chosen { !0 } else { 0 }, other.0, self.0) })
+            }
+
+            #[inline(always)]
             fn mul_add(self, factor: Self, addend: Self) -> Self {
                 // SAFETY: the values came from the token.
                 Self(unsafe { $fma(self.0, factor.0, addend.0) })
+            }
+
+            #[inline(always)]
+            fn negated_mul_add(self, factor: Self, addend: Self) -> Self {
+                // SAFETY: the values came from the token.
+                Self(unsafe { $fnma(self.0, factor.0, addend.0) })
             }
 
             #[inline(always)]
@@ -123,7 +141,9 @@ float!(
     _mm512_max_ps,
     |x| _mm512_abs_ps(x),
     _mm512_fmadd_ps,
+    _mm512_fnmadd_ps,
     _mm512_cmp_ps_mask,
+    _mm512_range_ps,
     _mm512_mask_blend_ps,
     _mm512_reduce_min_ps,
     _mm512_reduce_max_ps
@@ -139,7 +159,9 @@ float!(
     _mm256_max_ps,
     |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x),
     _mm256_fmadd_ps,
+    _mm256_fnmadd_ps,
     _mm256_cmp_ps_mask,
+    _mm256_range_ps,
     _mm256_mask_blend_ps,
     least_of_eight,
     greatest_of_eight
@@ -171,6 +193,56 @@ impl Simd for Avx512 {
     fn load8(self, numbers: &[f32; 8]) -> F8 {
         // SAFETY: the token; eight numbers can be read.
         F8(unsafe { _mm256_loadu_ps(numbers.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn columns(self, rows: &[[f32; 8]; 16]) -> [F16; 8] {
+        // SAFETY: the token; two rows can be read from each even one on.
+        unsafe {
+            // Each register has two rows, a row two quarters. Bring the first quarters of rows 0, 4, 8 and 12 into one register, of rows 1, 5,
+            // 9 and 13 into the next, ..., and likewise the second quarters.
+            let pair = |row: usize| _mm512_loadu_ps(rows.as_ptr().add(row).cast());
+            let [r0, r2, r4, r6] = [pair(0), pair(2), pair(4), pair(6)];
+            let [r8, r10, r12, r14] = [pair(8), pair(10), pair(12), pair(14)];
+            macro_rules! quarters {
+                ($a:expr, $b:expr, $c:expr, $d:expr, $even:literal, $odd:literal) => {{
+                    let (ab, cd) = (
+                        _mm512_shuffle_f32x4::<$even>($a, $b),
+                        _mm512_shuffle_f32x4::<$even>($c, $d),
+                    );
+                    let even = _mm512_shuffle_f32x4::<0b10_00_10_00>(ab, cd);
+                    let (ab, cd) = (
+                        _mm512_shuffle_f32x4::<$odd>($a, $b),
+                        _mm512_shuffle_f32x4::<$odd>($c, $d),
+                    );
+                    (even, _mm512_shuffle_f32x4::<0b10_00_10_00>(ab, cd))
+                }};
+            }
+            let (a0, a1) = quarters!(r0, r4, r8, r12, 0b00_00_00_00, 0b10_10_10_10);
+            let (a2, a3) = quarters!(r2, r6, r10, r14, 0b00_00_00_00, 0b10_10_10_10);
+            let (b0, b1) = quarters!(r0, r4, r8, r12, 0b01_01_01_01, 0b11_11_11_11);
+            let (b2, b3) = quarters!(r2, r6, r10, r14, 0b01_01_01_01, 0b11_11_11_11);
+
+            // Now each quarter of four registers is a square of four rows.
+            macro_rules! turn {
+                ($a:expr, $b:expr, $c:expr, $d:expr) => {{
+                    let double = |x| _mm512_castps_pd(x);
+                    let (low_ab, high_ab) =
+                        (_mm512_unpacklo_ps($a, $b), _mm512_unpackhi_ps($a, $b));
+                    let (low_cd, high_cd) =
+                        (_mm512_unpacklo_ps($c, $d), _mm512_unpackhi_ps($c, $d));
+                    [
+                        F16(_mm512_castpd_ps(_mm512_unpacklo_pd(double(low_ab), double(low_cd)))),
+                        F16(_mm512_castpd_ps(_mm512_unpackhi_pd(double(low_ab), double(low_cd)))),
+                        F16(_mm512_castpd_ps(_mm512_unpacklo_pd(double(high_ab), double(high_cd)))),
+                        F16(_mm512_castpd_ps(_mm512_unpackhi_pd(double(high_ab), double(high_cd)))),
+                    ]
+                }};
+            }
+            let [a, b, c, d] = turn!(a0, a1, a2, a3);
+            let [e, f, g, h] = turn!(b0, b1, b2, b3);
+            [a, b, c, d, e, f, g, h]
+        }
     }
 
     #[inline(always)]
@@ -233,14 +305,51 @@ impl Simd for Avx512 {
     }
 
     #[inline(always)]
-    fn store_sorted(
+    fn least8(self, chosen: u32, numbers: F8) -> (f32, u32) {
+        // SAFETY: the token.
+        unsafe {
+            let chosen = chosen as u8;
+            let all = _mm256_mask_mov_ps(_mm256_set1_ps(f32::INFINITY), chosen, numbers.0);
+            let four = _mm_min_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps::<1>(all));
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            let one = _mm_min_ss(two, _mm_movehdup_ps(two));
+            let same = _mm256_cmp_ps_mask::<_CMP_EQ_OQ>(numbers.0, _mm256_broadcastss_ps(one));
+            (_mm_cvtss_f32(one), u32::from(chosen & same))
+        }
+    }
+
+    #[inline(always)]
+    fn push_chosen(
+        self,
+        chosen: u32,
+        items: &[u32; 16],
+        stack: &mut [u32],
+        top: usize,
+    ) -> (usize, u32) {
+        let below = stack[top - 1];
+        let stack = &mut stack[top..top + 16];
+        // SAFETY: the token; sixteen items can be read and written.
+        unsafe {
+            let items = _mm512_loadu_epi32(items.as_ptr().cast());
+            let items = _mm512_maskz_compress_epi32(chosen as u16, items);
+            _mm512_storeu_epi32(stack.as_mut_ptr().cast(), items);
+            let count = chosen.count_ones();
+            (count as usize, last(items, count, below))
+        }
+    }
+
+    #[inline(always)]
+    fn push_sorted(
         self,
         chosen: u32,
         keys: F16,
         items: &[u32; 16],
-        sorted_keys: &mut [f32; 16],
-        sorted_items: &mut [u32; 16],
-    ) -> usize {
+        (stack_keys, stack_items): (&mut [f32], &mut [u32]),
+        top: usize,
+    ) -> (usize, u32) {
+        let stack_keys = &mut stack_keys[top..top + 16];
+        let below = stack_items[top - 1];
+        let stack_items = &mut stack_items[top..top + 16];
         // SAFETY: the token; sixteen items can be read, and sixteen of both written.
         unsafe {
             // The keys' upper 28 bits and the lane are one whole number, negative below all others in lanes that are not chosen.
@@ -248,16 +357,32 @@ impl Simd for Avx512 {
             let bits = _mm512_andnot_si512(_mm512_set1_epi32(15), _mm512_castps_si512(keys.0));
             let tagged = _mm512_or_si512(bits, lanes);
             let none = _mm512_set1_epi32(i32::MIN);
-            let packed = _mm512_mask_compress_epi32(none, chosen as u16, tagged);
-            let sorted =
-                if chosen.count_ones() <= 4 { sort_four(packed) } else { sort_sixteen(packed) };
+            let sorted = sort_four(_mm512_mask_compress_epi32(none, chosen as u16, tagged));
             // A permutation takes the lane from the lowest four bits.
             let items = _mm512_permutexvar_epi32(sorted, _mm512_loadu_epi32(items.as_ptr().cast()));
-            let keys = _mm512_permutexvar_ps(sorted, keys.0);
-            _mm512_storeu_ps(sorted_keys.as_mut_ptr(), keys);
-            _mm512_storeu_epi32(sorted_items.as_mut_ptr().cast(), items);
+            _mm512_storeu_epi32(stack_keys.as_mut_ptr().cast(), sorted);
+            _mm512_storeu_epi32(stack_items.as_mut_ptr().cast(), items);
+            let count = chosen.count_ones();
+            (count as usize, last(items, count, below))
         }
-        chosen.count_ones() as usize
+    }
+}
+
+/// The last of the first `count` numbers, or `below` if there are none: without a branch, and from the register, as memory that was just written would be
+/// slow to answer.
+///
+/// # Safety
+///
+/// The processor has AVX-512.
+#[inline(always)]
+unsafe fn last(numbers: __m512i, count: u32, below: u32) -> u32 {
+    // SAFETY: the caller's.
+    unsafe {
+        // Of -1 the lowest five bits are the number of the last lane of the second vector.
+        let lane = _mm512_castsi128_si512(_mm_cvtsi32_si128(count.wrapping_sub(1) as i32));
+        let below = _mm512_set1_epi32(below as i32);
+        let last = _mm512_permutex2var_epi32(numbers, lane, below);
+        _mm_cvtsi128_si32(_mm512_castsi512_si128(last)) as u32
     }
 }
 
@@ -282,51 +407,6 @@ unsafe fn sort_four(v: __m512i) -> __m512i {
         exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), 0b1001_1001_1001_1001);
         exchange!(v, _mm512_shuffle_epi32::<0b01_00_11_10>(v), 0b0011_0011_0011_0011);
         exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), 0b0101_0101_0101_0101);
-    }
-    v
-}
-
-/// Sorts all lanes in descending order: Batcher's bitonic network.
-///
-/// # Safety
-///
-/// The processor has AVX-512.
-#[inline(always)]
-unsafe fn sort_sixteen(v: __m512i) -> __m512i {
-    let mut v = v;
-    // SAFETY: the caller's.
-    unsafe {
-        // Lanes one and two apart are in one quarter, four apart in neighbouring ones, eight apart in halves.
-        macro_rules! one_apart {
-            ($larger:expr) => {
-                exchange!(v, _mm512_shuffle_epi32::<0b10_11_00_01>(v), $larger)
-            };
-        }
-        macro_rules! two_apart {
-            ($larger:expr) => {
-                exchange!(v, _mm512_shuffle_epi32::<0b01_00_11_10>(v), $larger)
-            };
-        }
-        macro_rules! four_apart {
-            ($larger:expr) => {
-                exchange!(v, _mm512_shuffle_i32x4::<0b10_11_00_01>(v, v), $larger)
-            };
-        }
-        macro_rules! eight_apart {
-            ($larger:expr) => {
-                exchange!(v, _mm512_shuffle_i32x4::<0b01_00_11_10>(v, v), $larger)
-            };
-        }
-        one_apart!(0b1001_1001_1001_1001);
-        two_apart!(0b1100_0011_1100_0011);
-        one_apart!(0b1010_0101_1010_0101);
-        four_apart!(0b1111_0000_0000_1111);
-        two_apart!(0b1100_1100_0011_0011);
-        one_apart!(0b1010_1010_0101_0101);
-        eight_apart!(0b0000_0000_1111_1111);
-        four_apart!(0b0000_1111_0000_1111);
-        two_apart!(0b0011_0011_0011_0011);
-        one_apart!(0b0101_0101_0101_0101);
     }
     v
 }

@@ -8,6 +8,7 @@
 
 #![allow(unsafe_code)]
 
+mod arena;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -19,9 +20,19 @@ mod vector;
 #[cfg(test)]
 mod tests;
 
+use crate::Ray;
+pub(crate) use arena::Arena;
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};
+
+/// Sixteen rays as rows of eight numbers each: origin, start, direction, end.
+#[inline(always)]
+pub(crate) fn as_rows(rays: &[Ray; 16]) -> &[[f32; 8]; 16] {
+    const _: () = assert!(size_of::<Ray>() == size_of::<[f32; 8]>());
+    // SAFETY: a ray is made of eight numbers, in the order of their declaration and with nothing between them, for their sizes add up.
+    unsafe { &*std::ptr::from_ref(rays).cast() }
+}
 
 /// Work that is compiled for every level.
 pub(crate) trait Kernel {

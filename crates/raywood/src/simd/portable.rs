@@ -65,6 +65,11 @@ impl<const N: usize> Float for Array<N> {
     }
 
     #[inline(always)]
+    fn negated_mul_add(self, factor: Self, addend: Self) -> Self {
+        addend - self * factor
+    }
+
+    #[inline(always)]
     fn less(self, other: Self) -> u32 {
         self.lanes(other, |a, b| a < b)
     }

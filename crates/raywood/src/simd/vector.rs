@@ -20,9 +20,24 @@ pub(crate) trait Float:
     /// The absolute values.
     fn abs(self) -> Self;
 
+    /// The larger absolute value of each pair; either where one is NaN.
+    #[inline(always)]
+    fn larger_magnitude(self, other: Self) -> Self {
+        self.abs().larger(other.abs())
+    }
+
+    /// This, or `other` unless `chosen`: without a branch where the processor can.
+    #[inline(always)]
+    fn where_else(self, chosen: bool, other: Self) -> Self {
+        if chosen { self } else { other }
+    }
+
     /// `self * factor + addend`, rounded once where the processor has an instruction for it, else twice: for what needs a bound on the error, not
     /// the same number everywhere.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// `addend - self * factor`, rounded as [`mul_add`](Self::mul_add) does.
+    fn negated_mul_add(self, factor: Self, addend: Self) -> Self;
 
     /// The lanes where this is less.
     fn less(self, other: Self) -> u32;
@@ -62,10 +77,41 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
 
+    /// The columns of sixteen rows.
+    #[inline(always)]
+    fn columns(self, rows: &[[f32; 8]; 16]) -> [Self::F16; 8] {
+        let mut columns = [[0.0; 16]; 8];
+        for (lane, row) in rows.iter().enumerate() {
+            for (column, number) in columns.iter_mut().zip(row) {
+                column[lane] = *number;
+            }
+        }
+        let [a, b, c, d, e, f, g, h] = &columns;
+        [
+            self.load16(a),
+            self.load16(b),
+            self.load16(c),
+            self.load16(d),
+            self.load16(e),
+            self.load16(f),
+            self.load16(g),
+            self.load16(h),
+        ]
+    }
+
     /// Asks for seven cache lines from an address on to be fetched soon. Nothing is read, so any address will do.
     #[inline(always)]
     fn prefetch(self, start: *const u8) {
         let _ = start;
+    }
+
+    /// Asks for the memory of a slice to be fetched soon.
+    #[inline(always)]
+    fn prefetch_slice<T>(self, items: &[T]) {
+        let start = items.as_ptr().cast::<u8>();
+        for offset in (0..size_of_val(items)).step_by(7 * 64) {
+            self.prefetch(start.wrapping_add(offset));
+        }
     }
 
     /// Writes the places of even numbers, of odd ones below `end`, and of those equal to `last` (which is odd and not below `end`) to a list each, in
@@ -101,18 +147,63 @@ pub(crate) trait Simd: Copy {
         kept
     }
 
-    /// Writes the chosen of sixteen pairs of a key and an item, the largest keys first as far as cheaply possible: the order is a
-    /// heuristic, the set is exact. Up to sixteen places are overwritten. Returns how many pairs there are.
+    /// The least of the numbers in the chosen lanes, and where it stands; infinite and nowhere if none is chosen. None of the chosen is NaN.
     #[inline(always)]
-    fn store_sorted(
+    fn least8(self, chosen: u32, numbers: Self::F8) -> (f32, u32) {
+        let numbers = numbers.to_array();
+        let (mut least, mut places) = (f32::INFINITY, 0);
+        for (lane, number) in numbers.into_iter().enumerate() {
+            if chosen >> lane & 1 == 1 && number <= least {
+                places = if number < least { 0 } else { places } | 1 << lane;
+                least = number;
+            }
+        }
+        (least, places)
+    }
+
+    /// Puts the chosen of sixteen items onto a stack of `top` items, in their order. Returns how many they are, and which
+    /// item is last on the stack then.
+    ///
+    /// # Panics
+    ///
+    /// If there is no room for sixteen more, or the stack is empty.
+    #[inline(always)]
+    fn push_chosen(
+        self,
+        chosen: u32,
+        items: &[u32; 16],
+        stack: &mut [u32],
+        top: usize,
+    ) -> (usize, u32) {
+        let stack = &mut stack[top - 1..top + 16];
+        let (mut left, mut count) = (chosen, 0);
+        while left != 0 {
+            count += 1;
+            stack[count] = items[left.trailing_zeros() as usize];
+            left &= left - 1;
+        }
+        (count, stack[count])
+    }
+
+    /// Puts the chosen of sixteen pairs of a key and an item onto a stack of `top` pairs, the smallest keys last as far as cheaply possible: the order
+    /// is a heuristic, the set is exact. Keys may change by 15 units in the last place. Returns how many pairs they are, and which item
+    /// is last on the stack then.
+    ///
+    /// # Panics
+    ///
+    /// If there is no room for sixteen more, or the stack is empty.
+    #[inline(always)]
+    fn push_sorted(
         self,
         chosen: u32,
         keys: Self::F16,
         items: &[u32; 16],
-        sorted_keys: &mut [f32; 16],
-        sorted_items: &mut [u32; 16],
-    ) -> usize {
+        (stack_keys, stack_items): (&mut [f32], &mut [u32]),
+        top: usize,
+    ) -> (usize, u32) {
         let keys = keys.to_array();
+        let sorted_keys = &mut stack_keys[top..top + 16];
+        let sorted_items = &mut stack_items[top..top + 16];
         let (mut left, mut count) = (chosen, 0);
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
@@ -127,6 +218,6 @@ pub(crate) trait Simd: Copy {
             (sorted_keys[place], sorted_items[place]) = (keys[lane], items[lane]);
             count += 1;
         }
-        count
+        (count, stack_items[top + count - 1])
     }
 }

@@ -17,6 +17,7 @@ pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;
 pub use wide::WideBvh;
+pub(crate) use wide::WideNode;
 
 use crate::{Geometry, Hit, NodeView, Probe, Ray, SimdLevel, StructureStats, ValidationError};
 

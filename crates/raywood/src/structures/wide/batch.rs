@@ -5,35 +5,36 @@
 //! depends on it.
 
 use super::WideBvh;
+use super::flight::Flight;
 use super::node::Reference;
-use super::single::free;
-use super::step::{any_blocks, children_met, leaf_hits, take_closest};
+use super::step::{any_blocks, leaf_hits, take_closest};
 use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
-use crate::traverse::slab::lengthened;
-use crate::{Geometry, Hit, PreparedRay, Ray};
+use crate::{AccelerationStructure, Geometry, Hit, Ray};
 
 /// How many rays are in flight.
 const RAYS: usize = 64;
 
 /// Finds the closest hits of many rays.
-pub(super) struct Closest<'a, G> {
+pub(super) struct Closest<'a, G, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
     pub(super) rays: &'a [Ray],
     pub(super) hits: &'a mut [Option<Hit>],
 }
 
-impl<G: Geometry> Kernel for Closest<'_, G> {
+impl<G: Geometry, const FAST: bool> Kernel for Closest<'_, G, FAST> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { tree, geometry, rays, hits } = self;
-        wave::<S, G, _, false>(simd, tree, geometry, rays, |number, nearest| {
-            hits[number] = nearest.into_hit();
-        });
+        let finish = |number: usize, nearest: Nearest| hits[number] = nearest.into_hit();
+        let spilled = wave::<S, G, _, false, FAST>(simd, tree, geometry, rays, finish);
+        for number in spilled {
+            hits[number] = tree.intersect(geometry, &rays[number], &mut ());
+        }
         for (ray, hit) in rays.iter().zip(hits) {
             if !ray.is_valid() {
                 *hit = None;
@@ -43,150 +44,131 @@ impl<G: Geometry> Kernel for Closest<'_, G> {
 }
 
 /// Finds out whether anything blocks each of many rays.
-pub(super) struct Any<'a, G> {
+pub(super) struct Any<'a, G, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
     pub(super) rays: &'a [Ray],
     pub(super) occluded: &'a mut [bool],
 }
 
-impl<G: Geometry> Kernel for Any<'_, G> {
+impl<G: Geometry, const FAST: bool> Kernel for Any<'_, G, FAST> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { tree, geometry, rays, occluded } = self;
         occluded.fill(false);
-        wave::<S, G, _, true>(simd, tree, geometry, rays, |number, nearest| {
-            occluded[number] = nearest.is_blocked();
-        });
+        let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
+        let spilled = wave::<S, G, _, true, FAST>(simd, tree, geometry, rays, finish);
+        for number in spilled {
+            occluded[number] = tree.occluded(geometry, &rays[number], &mut ());
+        }
     }
-}
-
-/// A ray in flight.
-struct Flight {
-    ray: PreparedRay,
-    nearest: Nearest,
-    /// Its place among all rays.
-    number: usize,
-    /// How many items are on its stack.
-    top: usize,
-    /// What was found in the last leaf.
-    hits: BlockHits,
 }
 
 /// Where there is no ray in flight: neither a node nor a leaf, nor the end of a ray's way.
 const IDLE: u32 = Reference::NOTHING.0 - 2;
 
-/// Traces all valid rays and tells `finish` what each found. With `ANY` a ray ends with its first hit.
+/// Traces all valid rays and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that found no room
+/// for their stacks and must be traced otherwise.
 #[inline(always)]
-fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool>(
+fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
     geometry: &G,
     rays: &[Ray],
     mut finish: F,
-) {
-    let size = tree.stack_size();
-    let mut waiting =
-        rays.iter().enumerate().filter_map(|(number, ray)| Some((number, PreparedRay::new(ray)?)));
-    let mut flying = Vec::with_capacity(RAYS.min(rays.len()));
+) -> Vec<usize> {
+    let mut waiting = rays.iter().enumerate().filter(|(_, ray)| ray.is_valid());
+    let mut flights = Vec::with_capacity(RAYS.min(rays.len()));
     let mut currents = [IDLE; RAYS];
     for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
         *current = tree.root.0;
-        flying.push(Flight {
-            nearest: Nearest::new(&ray),
-            ray,
-            number,
-            top: 1,
-            hits: BlockHits::NONE,
-        });
+        flights.push(Flight::new(ray, number, tree.reach));
     }
-
-    // Below everything on a stack lies the end, nearer than any limit.
-    let (mut keys, mut items) = (vec![0.0; flying.len() * size], vec![0; flying.len() * size]);
-    for place in 0..flying.len() {
-        (keys[place * size], items[place * size]) = (f32::NEG_INFINITY, Reference::NOTHING.0);
-    }
-
+    let flights = &mut flights[..];
+    let mut spilled = Vec::new();
     let mut lists = [[0; RAYS + 16]; 3];
+    let mut hits = [const { (0, BlockHits::NONE) }; RAYS + 1];
     loop {
         // Find out which rays do what next: all sixteen places at a time, without a branch.
         let counts = simd.partition(&currents, IDLE, Reference::NOTHING.0, &mut lists);
         let [nodes, leaves, done] = &lists;
         let (nodes, leaves, done) = (&nodes[..counts[0]], &leaves[..counts[1]], &done[..counts[2]]);
         if counts == [0; 3] {
-            return;
+            return spilled;
         }
 
         // Those whose way has ended make room for others.
         for &place in done {
             let place = place as usize;
-            let flight = &mut flying[place];
+            let flight = &mut flights[place];
             let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
             finish(flight.number, ended);
             currents[place] = IDLE;
             if let Some((number, ray)) = waiting.next() {
-                (flight.ray, flight.number, flight.top) = (ray, number, 1);
-                flight.nearest = Nearest::new(&flight.ray);
+                flight.begin(ray, number, tree.reach);
                 currents[place] = tree.root.0;
             }
         }
 
         for &place in nodes {
             let place = place as usize;
-            let flight = &mut flying[place];
-            let start = place * size;
-            let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
-            let node = &tree.nodes[Reference(currents[place]).index()];
-            let limit = flight.nearest.t_max();
-            let (met, near) = children_met(simd, node, &flight.ray, limit);
-            let (free_keys, free_items) = free(keys, items, flight.top);
-            flight.top += simd.store_sorted(met, near, &node.children, free_keys, free_items);
-            currents[place] = next(simd, tree, flight, items);
+            let flight = &mut flights[place];
+            if flight.is_full() {
+                spilled.push(flight.number);
+                currents[place] = Reference::NOTHING.0;
+                continue;
+            }
+            let next = flight.visit::<S, ANY>(simd, tree.node(Reference(currents[place])));
+            simd.prefetch(tree.address(next));
+            currents[place] = next.0;
         }
 
         // Test all leaves, and then look closer where something may be hit.
-        let mut hit_places = [0; RAYS];
-        let mut hit_count = 0;
+        let mut count = 0;
         for &place in leaves {
-            let Flight { ray, nearest, hits, .. } = &mut flying[place as usize];
-            let leaf = Reference(currents[place as usize]);
-            *hits = leaf_hits(simd, tree, geometry, leaf, ray, nearest.t_max());
-            hit_places[hit_count % RAYS] = place;
-            hit_count += usize::from(hits.hit | hits.doubtful != 0);
-        }
-        for &place in &hit_places[..hit_count] {
             let place = place as usize;
-            let Flight { ray, nearest, hits, top, .. } = &mut flying[place];
+            let flight = &mut flights[place];
             let leaf = Reference(currents[place]);
+            let found = leaf_hits::<S, G, FAST>(
+                simd,
+                tree,
+                geometry,
+                leaf,
+                &flight.ray,
+                flight.nearest.t_max(),
+            );
+            let some = found.hit | found.doubtful != 0;
+            hits[count] = (place, found);
+            count += usize::from(some);
+        }
+        for (place, found) in &hits[..count] {
+            let flight = &mut flights[*place];
+            let leaf = Reference(currents[*place]);
             if ANY {
-                if any_blocks(tree, geometry, leaf, hits, ray) {
-                    nearest.block();
-                    *top = 1;
+                if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, &flight.ray) {
+                    flight.nearest.block();
+                    flight.end();
                 }
-            } else {
-                let before = nearest.t_max();
-                take_closest(tree, geometry, leaf, hits, ray, nearest);
-                if nearest.t_max() < before {
-                    let start = place * size;
-                    let (keys, items) = (&mut keys[start..][..size], &mut items[start..][..size]);
-                    *top = simd.retain(keys, items, *top, lengthened(nearest.t_max()));
-                }
+            } else if {
+                let Flight { ray, nearest, .. } = &mut *flight;
+                take_closest::<S, G, FAST>(simd, tree, geometry, leaf, found, ray, nearest)
+            } {
+                flight.cull(simd);
             }
         }
         for &place in leaves {
             let place = place as usize;
-            currents[place] = next(simd, tree, &mut flying[place], &items[place * size..][..size]);
+            currents[place] = next(simd, tree, &mut flights[place]);
         }
     }
 }
 
 /// Takes the next node or leaf from the ray's stack and asks for its memory.
 #[inline(always)]
-fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight, items: &[u32]) -> u32 {
-    flight.top -= 1;
-    let reference = Reference(items[flight.top]);
+fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight) -> u32 {
+    let reference = flight.pop();
     simd.prefetch(tree.address(reference));
     reference.0
 }

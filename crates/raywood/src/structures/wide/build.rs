@@ -4,6 +4,7 @@ use super::WideBvh;
 use super::collapse::Plan;
 use super::node::{Reference, WideNode};
 use crate::geometry::{LANES, TriangleBlock};
+use crate::simd::Arena;
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel};
 
 /// The most primitives in a leaf of the binary tree: half of what a leaf of the wide tree holds, so that reinsertion can tell apart what lies in it. Single
@@ -25,29 +26,34 @@ pub(super) fn build<G: Geometry>(
     };
     let tree = Bvh2::build(geometry, &options)?;
     let plan = Plan::new(&tree);
-    let mut builder = Wide {
-        geometry,
-        tree: &tree,
-        plan: &plan,
-        depth: 0,
-        nodes: Vec::new(),
-        blocks: Vec::new(),
-    };
+    let mut builder =
+        Wide { geometry, tree: &tree, plan: &plan, depth: 0, arena: Arena::default() };
     let root = match tree.nodes() {
         [] => Reference::NOTHING,
         _ if plan.is_leaf(0) => builder.leaf(0),
         _ => {
-            builder.nodes.push(WideNode::EMPTY);
-            builder.fill(0, 0, 1);
-            Reference::node(0)
+            let root = builder.arena.push(WideNode::EMPTY);
+            builder.fill(root, 0, 1);
+            Reference::node(root)
         }
     };
-    let Wide { depth, nodes, blocks, .. } = builder;
-    if nodes.len().max(blocks.len()) > Reference::NUMBERS {
+    let Wide { depth, arena, .. } = builder;
+    if arena.len() > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
-    Ok(WideBvh { bounds, primitives, depth, root, nodes, blocks, level: SimdLevel::active() })
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let triangle_test = options.triangle_test;
+    Ok(WideBvh {
+        bounds,
+        primitives,
+        triangle_test,
+        reach,
+        depth,
+        root,
+        arena,
+        level: SimdLevel::active(),
+    })
 }
 
 /// A wide tree that is being made.
@@ -56,13 +62,12 @@ struct Wide<'a, G> {
     tree: &'a Bvh2,
     plan: &'a Plan,
     depth: usize,
-    nodes: Vec<WideNode>,
-    blocks: Vec<TriangleBlock>,
+    arena: Arena,
 }
 
 impl<G: Geometry> Wide<'_, G> {
-    /// Fills a node, which takes the place of node `number` of the binary tree, and everything below it. The children lie side by side.
-    fn fill(&mut self, index: usize, number: usize, depth: usize) {
+    /// Fills the node at a line, which takes the place of node `number` of the binary tree, and everything below it. The children lie side by side.
+    fn fill(&mut self, line: usize, number: usize, depth: usize) {
         self.depth = self.depth.max(depth);
         let children = self.plan.children(self.tree, number);
         let mut nodes = Vec::new();
@@ -70,16 +75,15 @@ impl<G: Geometry> Wide<'_, G> {
             let child = if self.plan.is_leaf(number) {
                 self.leaf(number)
             } else {
-                let index = self.nodes.len();
-                self.nodes.push(WideNode::EMPTY);
-                nodes.push((index, number));
-                Reference::node(index)
+                let line = self.arena.push(WideNode::EMPTY);
+                nodes.push((line, number));
+                Reference::node(line)
             };
             let bounds = self.tree.nodes()[number].bounds();
-            self.nodes[index].set(lane, &bounds, child);
+            self.arena.get_mut::<WideNode>(line).set(lane, &bounds, child);
         }
-        for (index, number) in nodes {
-            self.fill(index, number, depth + 1);
+        for (line, number) in nodes {
+            self.fill(line, number, depth + 1);
         }
     }
 
@@ -104,7 +108,6 @@ impl<G: Geometry> Wide<'_, G> {
             mixed |= triangle.is_none();
             block.set(lane, primitive, triangle.unwrap_or_default());
         }
-        self.blocks.push(block);
-        Reference::leaf(self.blocks.len() - 1, primitives.len(), mixed)
+        Reference::leaf(self.arena.push(block), primitives.len(), mixed)
     }
 }

@@ -4,17 +4,23 @@ mod batch;
 mod build;
 mod check;
 mod collapse;
+mod flight;
 mod node;
 mod single;
+mod slabs;
 mod step;
 #[cfg(test)]
 mod tests;
 
 use super::AccelerationStructure;
 use crate::geometry::TriangleBlock;
-use crate::simd::{SimdLevel, dispatch_on};
-use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, ValidationError};
-use node::{Reference, WideNode};
+use crate::simd::{Arena, SimdLevel, dispatch_on};
+use crate::{
+    Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, TriangleTest,
+    ValidationError,
+};
+use node::Reference;
+pub(crate) use node::WideNode;
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
 /// [`SimdLevel`].
@@ -26,12 +32,15 @@ use node::{Reference, WideNode};
 pub struct WideBvh {
     bounds: Aabb,
     primitives: u32,
+    triangle_test: TriangleTest,
+    /// How far the boxes reach from zero along any axis.
+    reach: f32,
     /// How many nodes lie on the longest way from the root to a leaf.
     depth: usize,
     /// The node or leaf that holds everything; [`Reference::NOTHING`] if there is nothing.
     root: Reference,
-    nodes: Vec<WideNode>,
-    blocks: Vec<TriangleBlock>,
+    /// Nodes and leaves, depth first, the children of a node side by side.
+    arena: Arena,
     /// The instructions that trace it.
     level: SimdLevel,
 }
@@ -51,13 +60,22 @@ impl WideBvh {
         self.bounds
     }
 
-    /// Where a node or leaf lies in memory, to be fetched: computed without a branch, which nobody could predict. Of nothing it means nothing.
+    /// The node that a reference to a node means.
+    #[inline(always)]
+    fn node(&self, reference: Reference) -> &WideNode {
+        self.arena.get(reference.line())
+    }
+
+    /// The triangles that a reference to a leaf means.
+    #[inline(always)]
+    fn block(&self, reference: Reference) -> &TriangleBlock {
+        self.arena.get(reference.line())
+    }
+
+    /// Where a node or leaf lies in memory, to be fetched. Of nothing it means nothing.
     #[inline(always)]
     fn address(&self, reference: Reference) -> *const u8 {
-        let kind = usize::from(reference.is_leaf());
-        let start = [self.nodes.as_ptr().cast::<u8>(), self.blocks.as_ptr().cast()][kind];
-        let size = [size_of::<WideNode>(), size_of::<TriangleBlock>()][kind];
-        start.wrapping_add(size * reference.index())
+        self.arena.address(reference.line())
     }
 
     /// How many items the stack of a traversal has room for: of each node on the way all children but one stay behind, below them lies the mark of
@@ -74,19 +92,55 @@ impl AccelerationStructure for WideBvh {
         ray: &Ray,
         probe: &mut P,
     ) -> Option<Hit> {
-        dispatch_on(self.level, single::Closest { tree: self, geometry, ray, probe })
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                single::Closest::<_, _, false> { tree: self, geometry, ray, probe },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                single::Closest::<_, _, true> { tree: self, geometry, ray, probe },
+            ),
+        }
     }
 
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
-        dispatch_on(self.level, single::Any { tree: self, geometry, ray, probe })
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                single::Any::<_, _, false> { tree: self, geometry, ray, probe },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                single::Any::<_, _, true> { tree: self, geometry, ray, probe },
+            ),
+        }
     }
 
     fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        dispatch_on(self.level, batch::Closest { tree: self, geometry, rays, hits });
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                batch::Closest::<_, false> { tree: self, geometry, rays, hits },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                batch::Closest::<_, true> { tree: self, geometry, rays, hits },
+            ),
+        }
     }
 
     fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
-        dispatch_on(self.level, batch::Any { tree: self, geometry, rays, occluded });
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                batch::Any::<_, false> { tree: self, geometry, rays, occluded },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                batch::Any::<_, true> { tree: self, geometry, rays, occluded },
+            ),
+        }
     }
 
     fn simd_level(&self) -> Option<SimdLevel> {
@@ -106,14 +160,14 @@ impl AccelerationStructure for WideBvh {
             let references = reference.is_leaf().then(|| reference.count());
             visit(NodeView { bounds, level, references });
             if !reference.is_leaf() {
-                let node = &self.nodes[reference.index()];
+                let node = self.node(reference);
                 pending.extend(node.children().map(|(bounds, child)| (child, bounds, level + 1)));
             }
         }
     }
 
     fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..])
+        64 * self.arena.len()
     }
 
     fn primitives(&self) -> usize {

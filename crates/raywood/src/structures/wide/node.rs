@@ -15,9 +15,9 @@ pub(super) const WIDTH: usize = 16;
 /// A child that is not there has an inverted box, which no ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub(super) struct WideNode {
-    /// By axis and side, `2 * axis` the smallest and `2 * axis + 1` the largest coordinates.
-    pub(super) planes: [[f32; WIDTH]; 6],
+pub(crate) struct WideNode {
+    /// By axis and side: first the smallest, then the largest coordinates.
+    pub(super) planes: [[[f32; WIDTH]; 2]; 3],
     pub(super) children: [u32; WIDTH],
 }
 
@@ -26,22 +26,15 @@ const _: () = assert!(size_of::<WideNode>() == 448);
 impl WideNode {
     /// A node without children.
     pub(super) const EMPTY: Self = Self {
-        planes: [
-            [f32::INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-            [f32::INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-            [f32::INFINITY; WIDTH],
-            [f32::NEG_INFINITY; WIDTH],
-        ],
+        planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [Reference::NOTHING.0; WIDTH],
     };
 
     /// Puts a child into a lane.
     pub(super) fn set(&mut self, lane: usize, bounds: &Aabb, child: Reference) {
         for axis in 0..3 {
-            self.planes[2 * axis][lane] = bounds.min[axis];
-            self.planes[2 * axis + 1][lane] = bounds.max[axis];
+            self.planes[axis][0][lane] = bounds.min[axis];
+            self.planes[axis][1][lane] = bounds.max[axis];
         }
         self.children[lane] = child.0;
     }
@@ -49,7 +42,7 @@ impl WideNode {
     /// The children that are there, with their boxes.
     pub(super) fn children(&self) -> impl Iterator<Item = (Aabb, Reference)> {
         let corner = |side: usize, lane: usize| {
-            let [x, y, z] = [0, 1, 2].map(|axis| self.planes[2 * axis + side][lane]);
+            let [x, y, z] = [0, 1, 2].map(|axis| self.planes[axis][side][lane]);
             Vec3::new(x, y, z)
         };
         (0..WIDTH)
@@ -68,7 +61,7 @@ impl WideNode {
 /// | 0       | 0           | 1                                                      |
 /// | 1 to 3  | 0           | the number of its primitives, less one                 |
 /// | 4       | 0           | whether there are primitives in it that are no triangles |
-/// | 5 to 31 | its number  | the number of its block                                |
+/// | 5 to 31 | the number of its first cache line, for both                         |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Reference(pub(super) u32);
 
@@ -76,15 +69,15 @@ impl Reference {
     /// Nothing: of a tree without primitives, of a child that is not there, and the end of a stack.
     pub(super) const NOTHING: Self = Self(u32::MAX);
 
-    /// Numbers of nodes and blocks lie below this.
-    pub(super) const NUMBERS: usize = (1 << 27) - 1;
+    /// Numbers of cache lines lie below this: 8 GiB.
+    pub(super) const LINES: usize = (1 << 27) - 1;
 
-    pub(super) fn node(index: usize) -> Self {
-        Self((index as u32) << 5)
+    pub(super) fn node(line: usize) -> Self {
+        Self((line as u32) << 5)
     }
 
-    pub(super) fn leaf(index: usize, count: usize, mixed: bool) -> Self {
-        Self((index as u32) << 5 | u32::from(mixed) << 4 | (count as u32 - 1) << 1 | 1)
+    pub(super) fn leaf(line: usize, count: usize, mixed: bool) -> Self {
+        Self((line as u32) << 5 | u32::from(mixed) << 4 | (count as u32 - 1) << 1 | 1)
     }
 
     #[inline(always)]
@@ -92,9 +85,9 @@ impl Reference {
         self.0 & 1 == 1
     }
 
-    /// The number of the node or block.
+    /// The number of the first line of the node or leaf.
     #[inline(always)]
-    pub(super) fn index(self) -> usize {
+    pub(super) fn line(self) -> usize {
         (self.0 >> 5) as usize
     }
 

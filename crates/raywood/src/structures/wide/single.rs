@@ -2,21 +2,21 @@
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
-use super::step::{any_blocks, children_met, leaf_hits, take_closest};
+use super::slabs::{Slabs, end_of_keys};
+use super::step::{any_blocks, leaf_hits, take_closest};
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
-use crate::traverse::slab::lengthened;
 use crate::{Geometry, Hit, PreparedRay, Probe, Ray};
 
 /// Looks for the closest hit.
-pub(super) struct Closest<'a, G, P> {
+pub(super) struct Closest<'a, G, P, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
     pub(super) ray: &'a Ray,
     pub(super) probe: &'a mut P,
 }
 
-impl<G: Geometry, P: Probe> Kernel for Closest<'_, G, P> {
+impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Closest<'_, G, P, FAST> {
     type Output = Option<Hit>;
 
     #[inline(always)]
@@ -24,9 +24,10 @@ impl<G: Geometry, P: Probe> Kernel for Closest<'_, G, P> {
         let Self { tree, geometry, ray, probe } = self;
         let ray = PreparedRay::new(ray)?;
         let mut nearest = Nearest::new(&ray);
+        let slabs = Slabs::new(&ray, tree.reach);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();
-        let (mut top, mut current) = (0, tree.root);
+        let (mut top, mut current) = (1, tree.root);
         loop {
             if current == Reference::NOTHING {
                 return nearest.into_hit();
@@ -34,21 +35,28 @@ impl<G: Geometry, P: Probe> Kernel for Closest<'_, G, P> {
             probe.nodes(1);
             if current.is_leaf() {
                 probe.primitives(current.count());
-                let hits = leaf_hits(simd, tree, geometry, current, &ray, nearest.t_max());
-                take_closest(tree, geometry, current, &hits, &ray, &mut nearest);
+                let hits =
+                    leaf_hits::<S, G, FAST>(simd, tree, geometry, current, &ray, nearest.t_max());
+                take_closest::<S, G, FAST>(
+                    simd,
+                    tree,
+                    geometry,
+                    current,
+                    &hits,
+                    &ray,
+                    &mut nearest,
+                );
             } else {
-                let node = &tree.nodes[current.index()];
+                let node = tree.node(current);
                 probe.boxes(WIDTH);
-                let (met, near) = children_met(simd, node, &ray, nearest.t_max());
-                let (keys, items) = free(keys, items, top);
-                top += simd.store_sorted(met, near, &node.children, keys, items);
+                let (met, near) = slabs.children_met(simd, node, nearest.t_max());
+                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
             }
 
             // On to the next that begins before the closest hit.
-            let end = lengthened(nearest.t_max());
+            let end = end_of_keys(nearest.t_max());
             current = loop {
-                let Some(below) = top.checked_sub(1) else { break Reference::NOTHING };
-                top = below;
+                top -= 1;
                 if keys[top] <= end {
                     break Reference(items[top]);
                 }
@@ -58,23 +66,24 @@ impl<G: Geometry, P: Probe> Kernel for Closest<'_, G, P> {
 }
 
 /// Looks for any hit.
-pub(super) struct Any<'a, G, P> {
+pub(super) struct Any<'a, G, P, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
     pub(super) ray: &'a Ray,
     pub(super) probe: &'a mut P,
 }
 
-impl<G: Geometry, P: Probe> Kernel for Any<'_, G, P> {
+impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
     type Output = bool;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { tree, geometry, ray, probe } = self;
         let Some(ray) = PreparedRay::new(ray) else { return false };
+        let slabs = Slabs::new(&ray, tree.reach);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();
-        let (mut top, mut current) = (0, tree.root);
+        let (mut top, mut current) = (1, tree.root);
         loop {
             if current == Reference::NOTHING {
                 return false;
@@ -82,37 +91,20 @@ impl<G: Geometry, P: Probe> Kernel for Any<'_, G, P> {
             probe.nodes(1);
             if current.is_leaf() {
                 probe.primitives(current.count());
-                let hits = leaf_hits(simd, tree, geometry, current, &ray, ray.t_max);
-                if any_blocks(tree, geometry, current, &hits, &ray) {
+                let hits = leaf_hits::<S, G, FAST>(simd, tree, geometry, current, &ray, ray.t_max);
+                if any_blocks::<S, G, FAST>(simd, tree, geometry, current, &hits, &ray) {
                     return true;
                 }
             } else {
-                let node = &tree.nodes[current.index()];
+                let node = tree.node(current);
                 probe.boxes(WIDTH);
-                let (met, near) = children_met(simd, node, &ray, ray.t_max);
-                let (keys, items) = free(keys, items, top);
-                top += simd.store_sorted(met, near, &node.children, keys, items);
+                let (met, near) = slabs.children_met(simd, node, ray.t_max);
+                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
             }
-            current = match top.checked_sub(1) {
-                Some(below) => {
-                    top = below;
-                    Reference(items[top])
-                }
-                None => return false,
-            };
+            top -= 1;
+            current = Reference(items[top]);
         }
     }
-}
-
-/// The sixteen free places of a stack from `top` on.
-#[inline(always)]
-pub(super) fn free<'a>(
-    keys: &'a mut [f32],
-    items: &'a mut [u32],
-    top: usize,
-) -> (&'a mut [f32; WIDTH], &'a mut [u32; WIDTH]) {
-    const ROOM: &str = "a stack has room for all children of the deepest nodes";
-    (keys[top..].first_chunk_mut().expect(ROOM), items[top..].first_chunk_mut().expect(ROOM))
 }
 
 /// How many items a stack has room for without asking for memory: enough for eight levels, and few trees have more.
@@ -136,10 +128,13 @@ impl SmallStack {
     /// The keys and the items.
     #[inline(always)]
     fn parts(&mut self) -> (&mut [f32], &mut [u32]) {
-        if self.large.0.is_empty() {
-            (&mut self.keys, &mut self.items)
+        let (keys, items) = if self.large.0.is_empty() {
+            (&mut self.keys[..], &mut self.items[..])
         } else {
-            (&mut self.large.0, &mut self.large.1)
-        }
+            (&mut self.large.0[..], &mut self.large.1[..])
+        };
+        // Below all others lies the end, nearer than any limit.
+        (keys[0], items[0]) = (f32::NEG_INFINITY, Reference::NOTHING.0);
+        (keys, items)
     }
 }

@@ -1,41 +1,16 @@
 //! The two steps of a traversal: a ray against the children of a node, and against the primitives of a leaf.
 
 use super::WideBvh;
-use super::node::{Reference, WideNode};
-use crate::geometry::BlockHits;
-use crate::simd::{Float, Simd};
+use super::node::Reference;
+use crate::geometry::{BlockHits, LANES, TriangleBlock};
+use crate::simd::Simd;
 use crate::traverse::nearest::{Nearest, blocks};
-use crate::traverse::slab::{SLACK, inside_own_bounds};
 use crate::{Geometry, PreparedRay};
-
-/// The children that the ray meets up to `limit`, as a set of lanes, and where it enters the box of each: the slab test of the binary tree, with the
-/// same roundings.
-#[inline(always)]
-pub(super) fn children_met<S: Simd>(
-    simd: S,
-    node: &WideNode,
-    ray: &PreparedRay,
-    limit: f32,
-) -> (u32, S::F16) {
-    let (mut near, mut far) = (simd.splat16(ray.t_min), simd.splat16(limit));
-    for axis in 0..3 {
-        let (origin, reciprocal) =
-            (simd.splat16(ray.origin[axis]), simd.splat16(ray.reciprocal[axis]));
-        let side = ray.entry_corners[axis] & 1;
-        let entry = (simd.load16(&node.planes[2 * axis + side]) - origin) * reciprocal;
-        let exit = (simd.load16(&node.planes[2 * axis + 1 - side]) - origin) * reciprocal;
-        // NaN, for a ray in the plane of a face, leaves the others to decide.
-        near = entry.larger(near);
-        far = exit.smaller(far);
-    }
-    let end = far + far.abs() * simd.splat16(SLACK);
-    (near.less_or_equal(end), near)
-}
 
 /// What the vector test says of the primitives of a leaf: triangles that are certainly hit no further than `limit`, and in
 /// [`doubtful`](BlockHits::doubtful) all that must be tested one by one.
 #[inline(always)]
-pub(super) fn leaf_hits<S: Simd, G: Geometry>(
+pub(super) fn leaf_hits<S: Simd, G: Geometry, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
     geometry: &G,
@@ -43,47 +18,87 @@ pub(super) fn leaf_hits<S: Simd, G: Geometry>(
     ray: &PreparedRay,
     limit: f32,
 ) -> BlockHits {
-    let block = &tree.blocks[leaf.index()];
+    let block = tree.block(leaf);
     let others = others(geometry, &block.primitives, leaf);
-    let mut hits = block.intersect(simd, ray, leaf.lanes() & !others, limit);
+    let triangles = leaf.lanes() & !others;
+    let mut hits = if FAST {
+        block.intersect_fast(simd, ray, triangles, limit)
+    } else {
+        block.intersect(simd, ray, triangles, limit)
+    };
     hits.doubtful |= others;
     hits
 }
 
-/// Takes the hits of a leaf that the vector test found.
+/// Takes the closest hit of a leaf that the vector test found, and tells whether there was one closer than all before.
 #[inline(always)]
-pub(super) fn take_closest<G: Geometry>(
+pub(super) fn take_closest<S: Simd, G: Geometry, const FAST: bool>(
+    simd: S,
     tree: &WideBvh,
     geometry: &G,
     leaf: Reference,
     hits: &BlockHits,
     ray: &PreparedRay,
     nearest: &mut Nearest,
-) {
-    let block = &tree.blocks[leaf.index()];
-    for lane in lanes(hits.hit) {
-        if let Some(hit) = inside_own_bounds(ray, hits.get(lane), &block.bounds(lane)) {
-            nearest.offer(block.primitives[lane], hit);
-        }
+) -> bool {
+    let block = tree.block(leaf);
+    let before = nearest.t_max();
+    let (inside, t) = if FAST {
+        (hits.hit, TriangleBlock::distances(simd, hits))
+    } else {
+        block.inside_own_bounds(simd, ray, hits)
+    };
+    let (least, at) = simd.least8(inside, t);
+    for lane in lanes(at) {
+        nearest.offer(block.primitives[lane], hits.get(lane, least));
     }
-    for lane in lanes(hits.doubtful) {
-        nearest.test(geometry, ray, block.primitives[lane]);
+    if hits.doubtful != 0 {
+        test_doubtful(geometry, ray, &block.primitives, hits.doubtful, nearest);
+    }
+    nearest.t_max() < before
+}
+
+/// Tests the doubtful lanes of a block one by one.
+#[cold]
+#[inline(never)]
+fn test_doubtful<G: Geometry>(
+    geometry: &G,
+    ray: &PreparedRay,
+    primitives: &[u32; LANES],
+    doubtful: u32,
+    nearest: &mut Nearest,
+) {
+    for lane in lanes(doubtful) {
+        nearest.test(geometry, ray, primitives[lane]);
     }
 }
 
 /// Whether any of the hits of a leaf that the vector test found blocks the ray.
 #[inline(always)]
-pub(super) fn any_blocks<G: Geometry>(
+pub(super) fn any_blocks<S: Simd, G: Geometry, const FAST: bool>(
+    simd: S,
     tree: &WideBvh,
     geometry: &G,
     leaf: Reference,
     hits: &BlockHits,
     ray: &PreparedRay,
 ) -> bool {
-    let block = &tree.blocks[leaf.index()];
-    let inside = |lane| inside_own_bounds(ray, hits.get(lane), &block.bounds(lane)).is_some();
-    lanes(hits.hit).any(inside)
-        || lanes(hits.doubtful).any(|lane| blocks(geometry, ray, block.primitives[lane]))
+    let block = tree.block(leaf);
+    let inside = if FAST { hits.hit } else { block.inside_own_bounds(simd, ray, hits).0 };
+    inside != 0
+        || hits.doubtful != 0 && doubtful_blocks(geometry, ray, &block.primitives, hits.doubtful)
+}
+
+/// Whether one of the doubtful lanes of a block blocks the ray.
+#[cold]
+#[inline(never)]
+fn doubtful_blocks<G: Geometry>(
+    geometry: &G,
+    ray: &PreparedRay,
+    primitives: &[u32; LANES],
+    doubtful: u32,
+) -> bool {
+    lanes(doubtful).any(|lane| blocks(geometry, ray, primitives[lane]))
 }
 
 /// The lanes of a leaf that hold primitives which are no triangles.

@@ -1,9 +1,13 @@
 //! The wide tree on every level of instructions and with batches of every size, against the binary tree.
 
-use super::{WideBvh, batch, single};
+use super::node::Reference;
+use super::{WideBvh, WideNode, batch, single};
+use crate::geometry::TriangleBlock;
 use crate::simd::{SimdLevel, dispatch_on};
 use crate::structures::AccelerationStructure;
-use crate::{BuildOptions, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, Vec3};
+use crate::{
+    BuildOptions, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, TriangleTest, Vec3,
+};
 
 /// Random numbers from -1 to 1.
 fn random(seed: u32) -> impl FnMut() -> f32 {
@@ -77,9 +81,13 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
             let (geometry, tree) = (&things, &tree);
             for (ray, expected) in rays.iter().zip(&expected) {
                 let probe = &mut Counts::default();
-                let hit = dispatch_on(level, single::Closest { tree, geometry, ray, probe });
+                let hit = dispatch_on(
+                    level,
+                    single::Closest::<_, _, false> { tree, geometry, ray, probe },
+                );
                 assert_eq!(hit, *expected, "{what}: {ray:?}");
-                let blocked = dispatch_on(level, single::Any { tree, geometry, ray, probe });
+                let blocked =
+                    dispatch_on(level, single::Any::<_, _, false> { tree, geometry, ray, probe });
                 assert_eq!(blocked, expected.is_some(), "{what}: {ray:?}");
             }
             for size in [0, 1, 2, 63, 64, 65, 1000] {
@@ -87,14 +95,45 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
                 // What was there before must not matter.
                 let nonsense = Hit { t: 7.0, u: 7.0, v: 7.0, primitive: 7, instance: 7 };
                 let hits = &mut vec![Some(nonsense); size][..];
-                dispatch_on(level, batch::Closest { tree, geometry, rays, hits });
+                dispatch_on(level, batch::Closest::<_, false> { tree, geometry, rays, hits });
                 assert!(*hits == expected[..size], "{what}: a batch of {size}");
                 let occluded = &mut vec![true; size][..];
-                dispatch_on(level, batch::Any { tree, geometry, rays, occluded });
+                dispatch_on(level, batch::Any::<_, false> { tree, geometry, rays, occluded });
                 let right = occluded.iter().zip(&expected).all(|(o, hit)| *o == hit.is_some());
                 assert!(right, "{what}: a batch of {size} for any hit");
             }
         }
+    }
+}
+
+#[test]
+fn fast_tests_find_nearly_the_same() {
+    let things = things(3000, 50);
+    let options = BuildOptions { triangle_test: TriangleTest::Fast, ..Default::default() };
+    let tree = &WideBvh::build(&things, &options).expect("it builds");
+    let binary = Bvh2::build(&things, &options).expect("it builds");
+    let rays = &rays(20_000)[..];
+    for &level in SimdLevel::ALL.iter().filter(|level| level.is_available()) {
+        let geometry = &things;
+        let hits = &mut vec![None; rays.len()][..];
+        dispatch_on(level, batch::Closest::<_, true> { tree, geometry, rays, hits });
+        let occluded = &mut vec![false; rays.len()][..];
+        dispatch_on(level, batch::Any::<_, true> { tree, geometry, rays, occluded });
+        let mut different = 0;
+        for ((ray, hit), occluded) in rays.iter().zip(&*hits).zip(&*occluded) {
+            let probe = &mut ();
+            let alone =
+                dispatch_on(level, single::Closest::<_, _, true> { tree, geometry, ray, probe });
+            let near = |a: Option<Hit>, b: Option<Hit>| match (a, b) {
+                (Some(a), Some(b)) => (a.t - b.t).abs() <= 1e-4 * a.t.abs(),
+                (a, b) => a.is_none() && b.is_none(),
+            };
+            let expected = binary.intersect(&things, ray, probe);
+            let same =
+                near(expected, *hit) && near(expected, alone) && expected.is_some() == *occluded;
+            different += usize::from(!same);
+        }
+        assert!(different <= rays.len() / 1000, "{}: {different}", level.name());
     }
 }
 
@@ -107,18 +146,31 @@ fn damage_is_noticed() {
         damage(&mut tree);
         assert!(tree.validate(&things).is_err());
     };
-    damaged(|tree| tree.nodes[0].planes[0][0] += 10.0);
-    damaged(|tree| tree.nodes[0].children[1] = tree.nodes[0].children[0]);
-    damaged(|tree| tree.nodes[0].children[0] = super::node::Reference::NOTHING.0);
-    damaged(|tree| tree.blocks[0].primitives[0] = 100_000);
-    damaged(|tree| tree.blocks[1] = tree.blocks[0]);
+    fn root(tree: &mut WideBvh) -> &mut WideNode {
+        tree.arena.get_mut(tree.root.line())
+    }
+    fn first_leaf(tree: &mut WideBvh) -> &mut TriangleBlock {
+        let mut reference = tree.root;
+        while !reference.is_leaf() {
+            reference = tree.node(reference).children().next().expect("a child").1;
+        }
+        tree.arena.get_mut(reference.line())
+    }
+    damaged(|tree| root(tree).planes[0][0][0] += 10.0);
+    damaged(|tree| root(tree).children[1] = root(tree).children[0]);
+    damaged(|tree| root(tree).children[0] = Reference::NOTHING.0);
+    damaged(|tree| root(tree).children[0] |= u32::MAX << 5);
+    damaged(|tree| first_leaf(tree).primitives[0] = 100_000);
+    damaged(|tree| first_leaf(tree).primitives[0] = first_leaf(tree).primitives[1]);
     damaged(|tree| {
-        let primitive = tree.blocks[0].primitives[0];
-        tree.blocks[0].set(0, primitive, [Vec3::ZERO; 3]);
+        let primitive = first_leaf(tree).primitives[0];
+        first_leaf(tree).set(0, primitive, [Vec3::ZERO; 3]);
     });
     damaged(|tree| tree.depth = 1);
     damaged(|tree| tree.primitives += 1);
-    damaged(|tree| tree.nodes.push(tree.nodes[0]));
+    damaged(|tree| {
+        tree.arena.push(WideNode::EMPTY);
+    });
 }
 
 #[test]

@@ -1,0 +1,101 @@
+//! The state of a ray in flight: all in one place, of fixed size, so that finding it takes one multiplication.
+
+use super::node::{Reference, WIDTH, WideNode};
+use super::slabs::{Slabs, end_of_keys};
+use crate::simd::Simd;
+use crate::traverse::nearest::Nearest;
+use crate::{PreparedRay, Ray};
+
+/// How many items a stack has room for: enough for all but the deepest trees. A power of two; little in tests, so that
+/// they run out of it.
+const CAPACITY: usize = if cfg!(test) { 32 } else { 128 };
+
+/// A ray in flight.
+#[repr(C, align(64))]
+pub(super) struct Flight {
+    slabs: Slabs,
+    pub(super) nearest: Nearest,
+    /// How many items are on the stack.
+    top: usize,
+    /// Its place among all rays.
+    pub(super) number: usize,
+    pub(super) ray: PreparedRay,
+    /// Where the items begin, as [`Simd::push_sorted`] keeps it.
+    keys: [f32; CAPACITY],
+    /// Nodes and leaves yet to be visited. Below all others lies the end, nearer than any limit.
+    items: [u32; CAPACITY],
+}
+
+impl Flight {
+    /// A ray at its beginning, which must be valid.
+    pub(super) fn new(ray: &Ray, number: usize, reach: f32) -> Self {
+        let ray = PreparedRay::of_valid(ray);
+        let mut flight = Self {
+            slabs: Slabs::new(&ray, reach),
+            nearest: Nearest::new(&ray),
+            top: 1,
+            number,
+            ray,
+            keys: [0.0; CAPACITY],
+            items: [0; CAPACITY],
+        };
+        (flight.keys[0], flight.items[0]) = (f32::NEG_INFINITY, Reference::NOTHING.0);
+        flight
+    }
+
+    /// Another ray in the place of one that has ended.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, ray: &Ray, number: usize, reach: f32) {
+        let ray = PreparedRay::of_valid(ray);
+        self.slabs.replace(&ray, reach);
+        self.nearest = Nearest::new(&ray);
+        self.ray = ray;
+        self.number = number;
+        self.top = 1;
+    }
+
+    /// Whether the children of a node might find no room on the stack.
+    #[inline(always)]
+    pub(super) fn is_full(&self) -> bool {
+        self.top > CAPACITY - WIDTH
+    }
+
+    /// The step at a node, for a stack that is not [full](Self::is_full): puts the children that the ray meets onto the stack, and takes what is on top then.
+    #[inline(always)]
+    pub(super) fn visit<S: Simd, const ANY: bool>(
+        &mut self,
+        simd: S,
+        node: &WideNode,
+    ) -> Reference {
+        let (met, near) = self.slabs.children_met(simd, node, self.nearest.t_max());
+        let top = self.top;
+        let (count, last) = if ANY {
+            simd.push_chosen(met, &node.children, &mut self.items, top)
+        } else {
+            let stack = (&mut self.keys[..], &mut self.items[..]);
+            simd.push_sorted(met, near, &node.children, stack, top)
+        };
+        self.top = top + count - 1;
+        Reference(last)
+    }
+
+    /// Takes what is on top of the stack.
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Reference {
+        self.top -= 1;
+        Reference(self.items[self.top & (CAPACITY - 1)])
+    }
+
+    /// Leaves nothing but the end on the stack.
+    #[inline(always)]
+    pub(super) fn end(&mut self) {
+        self.top = 1;
+    }
+
+    /// Takes from the stack what begins beyond the closest hit.
+    #[inline(always)]
+    pub(super) fn cull<S: Simd>(&mut self, simd: S) {
+        let end = end_of_keys(self.nearest.t_max());
+        self.top = simd.retain(&mut self.keys, &mut self.items, self.top, end);
+    }
+}

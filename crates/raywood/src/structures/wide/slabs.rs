@@ -1,0 +1,142 @@
+//! The boxes of a node against a ray by slabs (Kay and Kajiya 1986), in six fused operations: what is near to the ray's canonical box test in
+//! `traverse/slab.rs`, and never narrower.
+//!
+//! The canonical distance of a plane is `fl(fl(plane - origin) * r)` with `r = fl(1 / direction)`; here it is `fl(plane * r - fl(origin * r))`, made
+//! smaller for planes of entry and larger for those of exit. `docs/numerics.md` derives by how much, so that a box that holds the winning hit is never
+//! skipped. Which hit wins is decided by the canonical test of the primitive's own box alone.
+
+use super::node::WideNode;
+use crate::minmax::larger;
+use crate::simd::{Float, Simd};
+use crate::{PreparedRay, Vec3};
+
+/// By how much of itself the product of origin and reciprocal is moved away from the box. It covers two roundings, and a third where nothing is fused.
+const PRODUCT_ERROR: f32 = 4.0 * f32::EPSILON;
+
+/// By how much of itself the far distance is lengthened: the canonical test's 16 roundings, and 16 for the relative part of the difference to it.
+const SLACK: f32 = 1.0 / (1 << 19) as f32;
+
+/// Reciprocals and sizes up to this are usual: their products neither overflow nor come near to it.
+const USUAL: f32 = (1u64 << 60) as f32;
+
+/// The side of a box on which a plane lies.
+#[derive(Clone, Copy, Debug)]
+#[repr(usize)]
+enum Side {
+    Smallest = 0,
+    Largest = 1,
+}
+
+/// A ray as the test of boxes needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slabs {
+    reciprocal: [f32; 3],
+    /// What is added to the product of a plane of entry.
+    entry: [f32; 3],
+    /// What is added to the product of a plane of exit.
+    exit: [f32; 3],
+    t_min: f32,
+    /// On which side the ray enters boxes.
+    sides: [Side; 3],
+}
+
+impl Slabs {
+    /// Those of a ray among boxes that reach no further from zero than `reach` along any axis.
+    #[inline(always)]
+    pub(super) fn new(ray: &PreparedRay, reach: f32) -> Self {
+        let mut slabs = Self::with(ray.origin, ray.reciprocal, ray.t_min, [0.0; 3]);
+        slabs.widen_if_unusual(ray, reach);
+        slabs
+    }
+
+    /// Those of another ray, written in place: a copy would have to wait for them.
+    #[inline(always)]
+    pub(super) fn replace(&mut self, ray: &PreparedRay, reach: f32) {
+        *self = Self::with(ray.origin, ray.reciprocal, ray.t_min, [0.0; 3]);
+        self.widen_if_unusual(ray, reach);
+    }
+
+    #[inline(always)]
+    fn widen_if_unusual(&mut self, ray: &PreparedRay, reach: f32) {
+        let steepest = largest(ray.reciprocal.abs());
+        let farthest = largest(ray.origin.abs());
+        if larger(larger(steepest, farthest), reach) > USUAL {
+            self.widen(ray.origin, ray.direction, ray.t_min, reach);
+        }
+    }
+
+    #[inline(always)]
+    fn with(origin: Vec3, reciprocal: Vec3, t_min: f32, errors: [f32; 3]) -> Self {
+        let products = [0, 1, 2].map(|axis| -(origin[axis] * reciprocal[axis]));
+        let error =
+            |axis: usize| products[axis].abs() * PRODUCT_ERROR + f32::MIN_POSITIVE + errors[axis];
+        let side = |r: f32| if r < 0.0 { Side::Largest } else { Side::Smallest };
+        Self {
+            reciprocal: reciprocal.to_array(),
+            entry: [0, 1, 2].map(|axis| products[axis] - error(axis)),
+            exit: [0, 1, 2].map(|axis| products[axis] + error(axis)),
+            t_min,
+            sides: [side(reciprocal.x), side(reciprocal.y), side(reciprocal.z)],
+        }
+    }
+
+    /// Makes them right for a ray that hardly moves along an axis, or whose distances may overflow.
+    #[cold]
+    #[inline(never)]
+    fn widen(&mut self, origin: Vec3, direction: Vec3, t_min: f32, reach: f32) {
+        let reciprocal = direction.to_array().map(|d| 1.0 / d);
+        let size = origin.abs().max_element().max(reach);
+        // No hit is further away than this, in either direction.
+        let farthest = 4.0 * size * reciprocal[direction.abs().max_axis()].abs();
+        let usual = size <= USUAL && farthest <= USUAL;
+
+        // Too steep: as steep as is usual, and around the slab in which the origin lies no distance is outside.
+        let steep = |r: f32| r.abs() > USUAL;
+        let bounded = reciprocal.map(|r| if steep(r) { USUAL.copysign(r) } else { r });
+        let errors = reciprocal.map(|r| if steep(r) { 2.0 * farthest } else { 0.0 });
+        *self = Self::with(origin, bounded.into(), t_min, errors);
+        for axis in 0..3 {
+            if !usual && (size > USUAL || steep(reciprocal[axis])) {
+                // Nothing can be said: every box is met, but not the inverted one of a child that is not there.
+                self.reciprocal[axis] = f32::MIN_POSITIVE.copysign(reciprocal[axis]);
+                (self.entry[axis], self.exit[axis]) = (f32::MIN, f32::MAX);
+            }
+        }
+    }
+
+    /// The children that the ray may meet up to `limit`, as a set of lanes, and where it enters the box of each, at the earliest.
+    #[inline(always)]
+    pub(super) fn children_met<S: Simd>(
+        &self,
+        simd: S,
+        node: &WideNode,
+        limit: f32,
+    ) -> (u32, S::F16) {
+        let (mut near, mut far) = (simd.splat16(self.t_min), simd.splat16(limit));
+        for axis in 0..3 {
+            let reciprocal = simd.splat16(self.reciprocal[axis]);
+            let planes = &node.planes[axis];
+            let side = self.sides[axis] as usize;
+            let entry = simd.load16(&planes[side]);
+            let exit = simd.load16(&planes[side ^ 1]);
+            // NaN, where products overflow, leaves the others to decide.
+            near = entry.mul_add(reciprocal, simd.splat16(self.entry[axis])).larger(near);
+            far = exit.mul_add(reciprocal, simd.splat16(self.exit[axis])).smaller(far);
+        }
+        let end = far.abs().mul_add(simd.splat16(SLACK), far);
+        (near.less_or_equal(end), near)
+    }
+}
+
+/// The largest coordinate of a vector without NaN.
+#[inline(always)]
+fn largest(v: Vec3) -> f32 {
+    larger(v.x, larger(v.y, v.z))
+}
+
+/// The key up to which items of a stack must be looked into when hits count up to `far`: the keys of boxes that may hold them are at most so large. Half
+/// of the allowance is for what the keys lost on the stack.
+#[inline(always)]
+pub(super) fn end_of_keys(far: f32) -> f32 {
+    far + far.abs() * (2.0 * SLACK)
+}
