@@ -146,15 +146,13 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool, const F
         for (place, found) in &hits[..count] {
             let flight = &mut flights[*place];
             let leaf = Reference(currents[*place]);
+            let Flight { ray, nearest, .. } = &mut *flight;
             if ANY {
-                if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, &flight.ray) {
-                    flight.nearest.block();
+                if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, ray) {
+                    nearest.block();
                     flight.end();
                 }
-            } else if {
-                let Flight { ray, nearest, .. } = &mut *flight;
-                take_closest::<S, G, FAST>(simd, tree, geometry, leaf, found, ray, nearest)
-            } {
+            } else if take_closest::<S, G, FAST>(simd, tree, geometry, leaf, found, ray, nearest) {
                 flight.cull(simd);
             }
         }

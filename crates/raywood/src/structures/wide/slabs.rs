@@ -95,10 +95,10 @@ impl Slabs {
         let bounded = reciprocal.map(|r| if steep(r) { USUAL.copysign(r) } else { r });
         let errors = reciprocal.map(|r| if steep(r) { 2.0 * farthest } else { 0.0 });
         *self = Self::with(origin, bounded.into(), t_min, errors);
-        for axis in 0..3 {
-            if !usual && (size > USUAL || steep(reciprocal[axis])) {
+        for (axis, r) in reciprocal.into_iter().enumerate() {
+            if !usual && (size > USUAL || steep(r)) {
                 // Nothing can be said: every box is met, but not the inverted one of a child that is not there.
-                self.reciprocal[axis] = f32::MIN_POSITIVE.copysign(reciprocal[axis]);
+                self.reciprocal[axis] = f32::MIN_POSITIVE.copysign(r);
                 (self.entry[axis], self.exit[axis]) = (f32::MIN, f32::MAX);
             }
         }
