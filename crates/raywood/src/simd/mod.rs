@@ -4,7 +4,7 @@
 //! level's vector types come from its token alone, and the token exists only where the processor has the instructions: so what is done with the
 //! values is safe.
 //!
-//! Every operation but [`Float::mul_add`] rounds as the scalar one does, and nothing else is fused: all levels give the same numbers to the bit.
+//! Every operation but [`Float::mul_add`] and its negated form rounds as the scalar one does, and nothing else is fused: all levels give the same numbers to the bit.
 
 #![allow(unsafe_code)]
 
