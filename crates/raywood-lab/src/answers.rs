@@ -23,6 +23,14 @@ impl Answer {
             Self::Any(blocked) => *blocked,
         }
     }
+
+    /// Whether this means the same as another answer to the same ray.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Closest(Some(hit)), Self::Closest(Some(other))) => hit.agrees_with(other),
+            (a, b) => a == b,
+        }
+    }
 }
 
 impl fmt::Display for Answer {
@@ -81,14 +89,14 @@ pub(crate) fn answers<G: Geometry>(
 }
 
 /// Holds two lots of answers to the same rays against each other, each with the name of who gave them.
-pub(crate) fn check_equal(
+pub(crate) fn check_agreement(
     kind: RayKind,
     rays: &[Ray],
     a: (&str, &[Answer]),
     b: (&str, &[Answer]),
 ) -> Result<(), Box<Mismatch>> {
     for ((&ray, &x), &y) in rays.iter().zip(a.1).zip(b.1) {
-        if x != y {
+        if !x.agrees_with(&y) {
             let names = [a.0.to_owned(), b.0.to_owned()];
             return Err(Box::new(Mismatch { kind, ray, names, answers: [x, y] }));
         }

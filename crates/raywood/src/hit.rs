@@ -16,3 +16,17 @@ pub struct Hit {
     /// Which instance of a scene; 0 where there are no instances.
     pub instance: u32,
 }
+
+impl Hit {
+    /// Distances that are told by different kernels, or by packets of different rays, differ by less than this share of themselves.
+    pub const DISTANCE_TOLERANCE: f32 = 1.0 / 1024.0;
+
+    /// Whether two answers to the same ray mean the same hit: at the same distance within [`DISTANCE_TOLERANCE`](Self::DISTANCE_TOLERANCE).
+    ///
+    /// Single rays are answered with the same numbers by every structure. Rays of a batch that share their origin are traced in packets, which round
+    /// differently: usually in the last digits, and where two primitives lie that close either may be named.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        let greatest = self.t.abs().max(other.t.abs());
+        (self.t - other.t).abs() <= Self::DISTANCE_TOLERANCE * greatest + f32::MIN_POSITIVE
+    }
+}

@@ -7,6 +7,11 @@ use rayon::prelude::*;
 /// How many items a task handles at least: enough that handing it out costs nothing in comparison.
 const GRAIN: usize = 4096;
 
+/// Pieces of a batch are multiples of this: rays that are traced together as a packet are the same ones for any number of threads, and packets of
+/// other rays may round differently.
+#[cfg(feature = "rayon")]
+const PACKET: usize = 256;
+
 /// Runs both closures, in parallel if `parallel` holds.
 pub(crate) fn join_if(parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
@@ -62,7 +67,7 @@ pub(crate) fn fill_pieces<I: Sync, O: Send>(
     {
         // Pieces large enough that filling pipelines at their beginning costs little, small enough that all threads have some.
         let threads = rayon::current_num_threads();
-        let piece = inputs.len().div_ceil(4 * threads).clamp(16, 4096);
+        let piece = inputs.len().div_ceil(4 * threads).min(4096).next_multiple_of(PACKET);
         inputs.par_chunks(piece).zip(outputs.par_chunks_mut(piece)).for_each(|(i, o)| f(i, o));
     }
     #[cfg(not(feature = "rayon"))]

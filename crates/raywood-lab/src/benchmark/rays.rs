@@ -4,7 +4,7 @@ use raywood::{SimdLevel, StructureKind};
 use raywood_render::{PreparedScene, View};
 
 use super::{BenchmarkError, BenchmarkOptions, Speed, Team};
-use crate::answers::{Answer, answers, check_equal};
+use crate::answers::{Answer, answers, check_agreement};
 use crate::ray_sets::{RayKind, RaySet, RaySetSummary, ray_sets};
 use crate::timing::take_turns;
 use crate::tracing::{affordable, trace};
@@ -117,7 +117,7 @@ fn check(
         match &first {
             None => first = Some((name, found)),
             Some((first, expected)) => {
-                check_equal(set.kind, &set.rays, (first, expected), (&name, &found))?;
+                check_agreement(set.kind, &set.rays, (first, expected), (&name, &found))?;
             }
         }
     }
@@ -135,7 +135,7 @@ fn check_against_reference(
     let rays: Vec<_> = sample.into_iter().map(|index| set.rays[index]).collect();
     let [expected, found] = both.map(|structure| answers(structure, set.kind, &rays));
     let [expecting, finding] = both.map(|structure| structure.kind().name());
-    check_equal(set.kind, &rays, (expecting, &expected), (finding, &found))?;
+    check_agreement(set.kind, &rays, (expecting, &expected), (finding, &found))?;
     Ok(())
 }
 

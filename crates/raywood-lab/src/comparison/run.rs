@@ -5,7 +5,7 @@ use raywood::{BuildOptions, Counts, Geometry, Ray, Structure, StructureKind};
 use raywood_render::{PreparedScene, Surfaces, View};
 
 use super::{CompareError, CompareOptions, Comparison, RaySetSummary, StructureReport, Traces};
-use crate::answers::{Answer, answers, check_equal};
+use crate::answers::{Answer, answers, check_agreement};
 use crate::ray_sets::{RayKind, RaySet, ray_sets};
 use crate::timing::{Timing, seconds, take_turns};
 use crate::tracing::{affordable, trace};
@@ -125,7 +125,7 @@ fn check(
     let expected: Vec<_> = sample.iter().map(|&index| expected[index]).collect();
     let found = answers(structure, set.kind, &rays);
     let [expecting, finding] = [reference, structure].map(|structure| structure.kind().name());
-    check_equal(set.kind, &rays, (expecting, &expected), (finding, &found))
+    check_agreement(set.kind, &rays, (expecting, &expected), (finding, &found))
         .map_err(CompareError::Mismatch)
 }
 
@@ -167,9 +167,7 @@ mod tests {
             let (inside, outside) = (sample[40], sample[40] + 1);
             let wrong = |answer: Answer| match answer {
                 Answer::Any(blocked) => Answer::Any(!blocked),
-                Answer::Closest(Some(hit)) => {
-                    Answer::Closest(Some(Hit { t: hit.t.next_up(), ..hit }))
-                }
+                Answer::Closest(Some(hit)) => Answer::Closest(Some(Hit { t: hit.t * 1.01, ..hit })),
                 Answer::Closest(None) => {
                     Answer::Closest(Some(Hit { t: 1.0, u: 0.0, v: 0.0, primitive: 7, instance: 0 }))
                 }

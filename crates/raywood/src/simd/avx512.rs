@@ -201,9 +201,13 @@ impl Simd for Avx512 {
         unsafe {
             // Each register has two rows, a row two quarters. Bring the first quarters of rows 0, 4, 8 and 12 into one register, of rows 1, 5,
             // 9 and 13 into the next, ..., and likewise the second quarters.
-            let pair = |row: usize| _mm512_loadu_ps(rows.as_ptr().add(row).cast());
-            let [r0, r2, r4, r6] = [pair(0), pair(2), pair(4), pair(6)];
-            let [r8, r10, r12, r14] = [pair(8), pair(10), pair(12), pair(14)];
+            macro_rules! pair {
+                ($row:literal) => {
+                    _mm512_loadu_ps(rows.as_ptr().add($row).cast())
+                };
+            }
+            let (r0, r2, r4, r6) = (pair!(0), pair!(2), pair!(4), pair!(6));
+            let (r8, r10, r12, r14) = (pair!(8), pair!(10), pair!(12), pair!(14));
             macro_rules! quarters {
                 ($a:expr, $b:expr, $c:expr, $d:expr, $even:literal, $odd:literal) => {{
                     let (ab, cd) = (
@@ -224,18 +228,22 @@ impl Simd for Avx512 {
             let (b2, b3) = quarters!(r2, r6, r10, r14, 0b01_01_01_01, 0b11_11_11_11);
 
             // Now each quarter of four registers is a square of four rows.
+            macro_rules! interleave {
+                ($half:ident, $a:expr, $b:expr) => {
+                    F16(_mm512_castpd_ps($half(_mm512_castps_pd($a), _mm512_castps_pd($b))))
+                };
+            }
             macro_rules! turn {
                 ($a:expr, $b:expr, $c:expr, $d:expr) => {{
-                    let double = |x| _mm512_castps_pd(x);
                     let (low_ab, high_ab) =
                         (_mm512_unpacklo_ps($a, $b), _mm512_unpackhi_ps($a, $b));
                     let (low_cd, high_cd) =
                         (_mm512_unpacklo_ps($c, $d), _mm512_unpackhi_ps($c, $d));
                     [
-                        F16(_mm512_castpd_ps(_mm512_unpacklo_pd(double(low_ab), double(low_cd)))),
-                        F16(_mm512_castpd_ps(_mm512_unpackhi_pd(double(low_ab), double(low_cd)))),
-                        F16(_mm512_castpd_ps(_mm512_unpacklo_pd(double(high_ab), double(high_cd)))),
-                        F16(_mm512_castpd_ps(_mm512_unpackhi_pd(double(high_ab), double(high_cd)))),
+                        interleave!(_mm512_unpacklo_pd, low_ab, low_cd),
+                        interleave!(_mm512_unpackhi_pd, low_ab, low_cd),
+                        interleave!(_mm512_unpacklo_pd, high_ab, high_cd),
+                        interleave!(_mm512_unpackhi_pd, high_ab, high_cd),
                     ]
                 }};
             }

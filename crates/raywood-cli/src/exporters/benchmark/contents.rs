@@ -167,7 +167,7 @@ fn notes(benchmark: &Benchmark) -> Vec<String> {
     };
     vec![
         format!(
-            "Answers are the same, to the bit, on every {variants}, and {reference}."
+            "Answers agree on every {variants}, and {reference}."
         ),
         "Times are medians of rounds taken in turn; \u{b1} is half the distance between the quartiles. Cycles are those of all cores together."
             .to_owned(),

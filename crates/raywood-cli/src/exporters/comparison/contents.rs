@@ -49,7 +49,7 @@ pub(super) fn ray_sets(comparison: &Comparison) -> Vec<String> {
 /// What must be said of the numbers.
 pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
     let mut notes = vec![
-        "Every answer of every structure equals the reference's for the same ray, to the bit.".to_owned(),
+        "Every answer of every structure agrees with the reference's for the same ray.".to_owned(),
         "Times are medians of rounds in which the structures take turns, one kind of rays after the other; ± is half the distance between the quartiles."
             .to_owned(),
     ];

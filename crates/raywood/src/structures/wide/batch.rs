@@ -4,10 +4,10 @@
 //! next ray's turn comes, so that the memory of its next node arrives meanwhile, and rays wait in lists by what they do next, so that no branch
 //! depends on it.
 
-use super::WideBvh;
 use super::flight::Flight;
 use super::node::Reference;
 use super::step::{any_blocks, leaf_hits, take_closest};
+use super::{WideBvh, packet};
 use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
@@ -30,17 +30,30 @@ impl<G: Geometry, const FAST: bool> Kernel for Closest<'_, G, FAST> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { tree, geometry, rays, hits } = self;
+        let mut rest = Vec::new();
+        let mut scratch = packet::Scratch::new(tree);
+        let pieces = rays.chunks(packet::RAYS).zip(hits.chunks_mut(packet::RAYS));
+        for (number, (piece, hits)) in pieces.enumerate() {
+            let first = number * packet::RAYS;
+            simd.prefetch_slice(next_piece(rays, first));
+            packet::closest::<S, FAST>(simd, tree, piece, hits, &mut scratch, &mut rest, first);
+        }
+        for &number in &rest {
+            hits[number] = None;
+        }
         let finish = |number: usize, nearest: Nearest| hits[number] = nearest.into_hit();
-        let spilled = wave::<S, G, _, false, FAST>(simd, tree, geometry, rays, finish);
+        let spilled = wave::<S, G, _, false, FAST>(simd, tree, geometry, rays, &rest, finish);
         for number in spilled {
             hits[number] = tree.intersect(geometry, &rays[number], &mut ());
         }
-        for (ray, hit) in rays.iter().zip(hits) {
-            if !ray.is_valid() {
-                *hit = None;
-            }
-        }
     }
+}
+
+/// The rays of the packet after that which begins with `first`: processors do not foresee that these are next, as other memory is read in between.
+#[inline(always)]
+fn next_piece(rays: &[Ray], first: usize) -> &[Ray] {
+    let start = (first + packet::RAYS).min(rays.len());
+    &rays[start..(start + packet::RAYS).min(rays.len())]
 }
 
 /// Finds out whether anything blocks each of many rays.
@@ -57,9 +70,19 @@ impl<G: Geometry, const FAST: bool> Kernel for Any<'_, G, FAST> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { tree, geometry, rays, occluded } = self;
-        occluded.fill(false);
+        let mut rest = Vec::new();
+        let mut scratch = packet::Scratch::new(tree);
+        let pieces = rays.chunks(packet::RAYS).zip(occluded.chunks_mut(packet::RAYS));
+        for (number, (piece, occluded)) in pieces.enumerate() {
+            let first = number * packet::RAYS;
+            simd.prefetch_slice(next_piece(rays, first));
+            packet::any::<S, FAST>(simd, tree, piece, occluded, &mut scratch, &mut rest, first);
+        }
+        for &number in &rest {
+            occluded[number] = false;
+        }
         let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
-        let spilled = wave::<S, G, _, true, FAST>(simd, tree, geometry, rays, finish);
+        let spilled = wave::<S, G, _, true, FAST>(simd, tree, geometry, rays, &rest, finish);
         for number in spilled {
             occluded[number] = tree.occluded(geometry, &rays[number], &mut ());
         }
@@ -77,10 +100,12 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool, const F
     tree: &WideBvh,
     geometry: &G,
     rays: &[Ray],
+    numbers: &[usize],
     mut finish: F,
 ) -> Vec<usize> {
-    let mut waiting = rays.iter().enumerate().filter(|(_, ray)| ray.is_valid());
-    let mut flights = Vec::with_capacity(RAYS.min(rays.len()));
+    let rays = numbers.iter().map(|&number| (number, &rays[number]));
+    let mut waiting = rays.filter(|(_, ray)| ray.is_valid());
+    let mut flights = Vec::with_capacity(RAYS.min(numbers.len()));
     let mut currents = [IDLE; RAYS];
     for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
         *current = tree.root.0;

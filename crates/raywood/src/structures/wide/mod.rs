@@ -6,6 +6,7 @@ mod check;
 mod collapse;
 mod flight;
 mod node;
+mod packet;
 mod single;
 mod slabs;
 mod step;
@@ -33,6 +34,8 @@ pub struct WideBvh {
     bounds: Aabb,
     primitives: u32,
     triangle_test: TriangleTest,
+    /// Whether all primitives are triangles.
+    only_triangles: bool,
     /// How far the boxes reach from zero along any axis.
     reach: f32,
     /// How many nodes lie on the longest way from the root to a leaf.

@@ -1,0 +1,70 @@
+//! The frame of a packet: the rays' common point at zero, the main axis of their directions as depth. There a ray is a point of the plane.
+
+use crate::Vec3;
+use crate::geometry::TriangleBlock;
+use crate::simd::Simd;
+
+/// Where a packet's rays start, or end, and along which axis they run.
+///
+/// A ray's two other coordinates grow in proportion to its depth: its two *slopes* say everything about it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// The axes of the slopes, and last that of the depth.
+    pub(super) axes: [usize; 3],
+    /// -1 if depth grows towards smaller coordinates, else 1.
+    pub(super) sign: f32,
+    /// The common point, by the axes' order.
+    pub(super) origin: [f32; 3],
+    /// How far any ray passes by that point at most, along each axis.
+    pub(super) offset: f32,
+}
+
+impl Frame {
+    /// The frame for rays through `origin`, or `offset` beside it, roughly along `direction`.
+    pub(super) fn new(origin: Vec3, offset: f32, direction: Vec3) -> Self {
+        let z = direction.abs().max_axis();
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let sign = if direction[z] < 0.0 { -1.0 } else { 1.0 };
+        Self { axes, sign, origin: axes.map(|axis| origin[axis]), offset }
+    }
+
+    /// The smallest and largest coordinates of sixteen boxes, given as planes by axis and side, seen in this frame; a little larger by what the rays miss the
+    /// common point by.
+    #[inline(always)]
+    pub(super) fn boxes<S: Simd>(&self, simd: S, planes: &[[[f32; 16]; 2]; 3]) -> [[S::F16; 3]; 2] {
+        let [first, second, third] = self.axes.map(|axis| &planes[axis]);
+        let [x, y, z] = self.origin;
+        let offset = self.offset;
+        let (low_x, high_x) = (simd.splat16(x + offset), simd.splat16(x - offset));
+        let (low_y, high_y) = (simd.splat16(y + offset), simd.splat16(y - offset));
+        let (z, sign, depth_offset) =
+            (simd.splat16(z), simd.splat16(self.sign), simd.splat16(offset));
+        let nearer = usize::from(self.sign < 0.0);
+        [
+            [
+                simd.load16(&first[0]) - low_x,
+                simd.load16(&second[0]) - low_y,
+                (simd.load16(&third[nearer]) - z) * sign - depth_offset,
+            ],
+            [
+                simd.load16(&first[1]) - high_x,
+                simd.load16(&second[1]) - high_y,
+                (simd.load16(&third[1 - nearer]) - z) * sign + depth_offset,
+            ],
+        ]
+    }
+
+    /// The corners of one number of the triangles of a block, seen in this frame.
+    #[inline(always)]
+    pub(super) fn corners<S: Simd>(
+        &self,
+        simd: S,
+        block: &TriangleBlock,
+        number: usize,
+    ) -> [S::F8; 3] {
+        let x = simd.load8(block.coordinates(number, self.axes[0])) - simd.splat8(self.origin[0]);
+        let y = simd.load8(block.coordinates(number, self.axes[1])) - simd.splat8(self.origin[1]);
+        let z = simd.load8(block.coordinates(number, self.axes[2])) - simd.splat8(self.origin[2]);
+        [x, y, z * simd.splat8(self.sign)]
+    }
+}

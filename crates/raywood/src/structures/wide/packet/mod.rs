@@ -1,0 +1,506 @@
+//! Large packets: up to 256 rays through one point, together through the wide tree.
+//!
+//! Seen from their common point, rays are points of a plane, and everything about them is linear. Sixteen groups of sixteen rays go down the tree
+//! together; a child is entered by the groups whose pyramids meet its box. What is found of a triangle once serves all rays: Wald, Slusallek, Benthin and
+//! Wagner, "Interactive Rendering with Coherent Ray Tracing", CGF 2001; Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH
+//! 2005; Fuetterling, Lojewski, Pfreundt and Ebert, "Efficient Ray Tracing Kernels for Modern CPU Architectures", JCGT 2015.
+
+mod frame;
+mod gather;
+mod groups;
+mod sort;
+mod triangles;
+
+use super::WideBvh;
+use super::node::{Reference, WIDTH};
+use crate::simd::{Float, Simd};
+use crate::{Hit, PreparedRay, Ray};
+use frame::Frame;
+use groups::Groups;
+use triangles::{GREATEST_VOLUME, Triangles};
+
+/// How many rays a packet has at most.
+pub(super) const RAYS: usize = 256;
+
+/// How many rays a group has, and a packet groups.
+const GROUP: usize = 16;
+
+/// Rays through one point. A group of sixteen rays a row.
+#[repr(C, align(64))]
+pub(super) struct Packet {
+    /// Coordinates per depth, along the frame's first and second axis.
+    slopes: [[[f32; GROUP]; GROUP]; 2],
+    /// One over the depth of the closest hit so far, at first of the ray's end; infinite when nothing counts any more.
+    nearest: [[f32; GROUP]; GROUP],
+    /// The weights of the second and third corner where it was hit, over the depth.
+    weights: [[[f32; GROUP]; GROUP]; 2],
+    /// The bits of the number of the primitive that was hit.
+    primitives: [[f32; GROUP]; GROUP],
+    /// Distance per depth.
+    scales: [[f32; GROUP]; GROUP],
+    groups: Groups,
+    frame: Frame,
+    /// One over the depth at which the last ray starts to count.
+    start: f32,
+    /// Whether any ray ends.
+    is_bounded: bool,
+    /// Whether rays are in another order than in the slice.
+    is_sorted: bool,
+    /// Which ray of the slice each one is.
+    numbers: [[u8; GROUP]; GROUP],
+    /// How many triangles each group was tested against.
+    work: [f32; GROUP],
+    /// The rays of each group that must be traced alone after all.
+    alone: [u32; GROUP],
+    /// The rays of each group that are in the packet.
+    members: [u32; GROUP],
+}
+
+/// Depths with a larger relative error are not trusted: the triangle test of single rays decides.
+const TOLERANCE: f32 = 1.0 / 4096.0;
+
+/// The same where depths need not be known, only whether they are less than another one.
+const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
+
+/// A group is given up when it was tested against more triangles than this: about as long does it take to trace its rays one by one.
+const MOST_WORK: f32 = 96.0;
+
+/// Stands for a primitive where none was hit.
+const NONE: u32 = u32::MAX;
+
+/// What waits to be visited.
+#[derive(Clone, Copy)]
+struct Item {
+    reference: Reference,
+    /// The groups that meet its box.
+    groups: u32,
+    /// From which depth on the packet is in its box.
+    near: f32,
+}
+
+/// The memory that tracing packets needs, for one packet after the other.
+pub(super) struct Scratch {
+    packet: Box<Packet>,
+    stack: Vec<Item>,
+}
+
+impl Scratch {
+    pub(super) fn new(tree: &WideBvh) -> Self {
+        let nothing = Item { reference: Reference::NOTHING, groups: 0, near: 0.0 };
+        Self { packet: Box::new(Packet::empty()), stack: vec![nothing; tree.stack_size()] }
+    }
+}
+
+/// Finds the closest hits of rays that share their origin. Appends the numbers of rays that must be traced otherwise to `rest`.
+#[inline(always)]
+pub(super) fn closest<S: Simd, const FAST: bool>(
+    simd: S,
+    tree: &WideBvh,
+    rays: &[Ray],
+    hits: &mut [Option<Hit>],
+    scratch: &mut Scratch,
+    rest: &mut Vec<usize>,
+    first: usize,
+) {
+    let Scratch { packet, stack } = scratch;
+    if !tree.only_triangles {
+        rest.extend(first..first + rays.len());
+    } else if packet.gather::<S, false>(simd, rays, rest, first) {
+        // While the packet is under way, the place for its hits arrives.
+        simd.prefetch_slice(hits);
+        packet.trace::<S, false, FAST>(simd, tree, rays, stack);
+        packet.finish(simd, rays, hits, rest, first);
+    }
+}
+
+/// Finds out whether anything blocks rays that share their origin or their end. Appends the numbers of rays that must be traced otherwise to `rest`.
+#[inline(always)]
+pub(super) fn any<S: Simd, const FAST: bool>(
+    simd: S,
+    tree: &WideBvh,
+    rays: &[Ray],
+    occluded: &mut [bool],
+    scratch: &mut Scratch,
+    rest: &mut Vec<usize>,
+    first: usize,
+) {
+    let Scratch { packet, stack } = scratch;
+    if !tree.only_triangles {
+        rest.extend(first..first + rays.len());
+    } else if packet.gather::<S, true>(simd, rays, rest, first) {
+        packet.trace::<S, true, FAST>(simd, tree, rays, stack);
+        for group in 0..GROUP {
+            for lane in 0..GROUP {
+                let number = usize::from(packet.numbers[group][lane]);
+                let is_member = packet.members[group] >> lane & 1 == 1;
+                let is_blocked = packet.nearest[group][lane] == f32::INFINITY;
+                if number < occluded.len() {
+                    occluded[number] = is_member && is_blocked;
+                }
+                if packet.alone[group] >> lane & 1 == 1 && !is_blocked {
+                    rest.push(first + number);
+                }
+            }
+        }
+    }
+}
+
+impl Packet {
+    fn empty() -> Self {
+        let zeros = [[0.0; GROUP]; GROUP];
+        Self {
+            slopes: [zeros; 2],
+            nearest: zeros,
+            weights: [zeros; 2],
+            primitives: zeros,
+            scales: zeros,
+            groups: Groups::NONE,
+            frame: Frame::new(crate::Vec3::ZERO, 0.0, crate::Vec3::ZERO),
+            start: f32::INFINITY,
+            is_bounded: false,
+            is_sorted: false,
+            numbers: [[0; GROUP]; GROUP],
+            work: [0.0; GROUP],
+            alone: [0; GROUP],
+            members: [0; GROUP],
+        }
+    }
+
+    /// Sends the packet through the tree.
+    #[inline(always)]
+    fn trace<S: Simd, const ANY: bool, const FAST: bool>(
+        &mut self,
+        simd: S,
+        tree: &WideBvh,
+        rays: &[Ray],
+        stack: &mut [Item],
+    ) {
+        if tree.root == Reference::NOTHING {
+            return;
+        }
+        self.work = [0.0; GROUP];
+        self.alone = [0; GROUP];
+        stack[0] = Item { reference: tree.root, groups: self.groups.live, near: 0.0 };
+        let mut top = 1;
+        while top > 0 {
+            top -= 1;
+            let Item { reference, groups, near } = stack[top];
+            let groups = groups & self.groups.reaching(simd, near);
+            if groups == 0 {
+                continue;
+            }
+            if reference.is_leaf() {
+                self.visit_leaf::<S, ANY, FAST>(simd, tree, rays, reference, groups);
+            } else {
+                top += self.enter_node(simd, tree, reference, groups, &mut stack[top..]);
+            }
+        }
+    }
+
+    /// Puts the children of a node that some group meets onto the stack, the nearest last, and tells how many these are.
+    #[inline(always)]
+    fn enter_node<S: Simd>(
+        &self,
+        simd: S,
+        tree: &WideBvh,
+        reference: Reference,
+        groups: u32,
+        stack: &mut [Item],
+    ) -> usize {
+        // The children that the packet as a whole meets.
+        let node = tree.node(reference);
+        let boxes = self.frame.boxes(simd, &node.planes);
+        let (met, near) = self.groups.met_by_any(simd, &boxes);
+        let [[low_x, low_y, low_z], [high_x, high_y, high_z]] = boxes;
+        let low = [low_x.to_array(), low_y.to_array(), low_z.to_array()];
+        let high = [high_x.to_array(), high_y.to_array(), high_z.to_array()];
+
+        // Of these those that some group meets.
+        let mut meeting = [0; WIDTH];
+        let (mut left, mut entered) = (met, 0);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let low = [low[0][lane], low[1][lane], low[2][lane]];
+            let high = [high[0][lane], high[1][lane], high[2][lane]];
+            meeting[lane] = self.groups.meeting(simd, low, high) & groups;
+            entered |= u32::from(meeting[lane] != 0) << lane;
+        }
+
+        // A child's place on the stack is the number of those that are entered later, or equally soon and have a higher number.
+        let count = entered.count_ones() as usize;
+        let stack = &mut stack[..WIDTH];
+        let depths = near.to_array();
+        let mut left = entered;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let depth = simd.splat16(depths[lane]);
+            let later =
+                depth.less(near) | (depth.less_or_equal(near) & !(2u32 << lane).wrapping_sub(1));
+            let place = (later & entered).count_ones() as usize;
+            let reference = Reference(node.children[lane]);
+            simd.prefetch(tree.address(reference));
+            stack[place] = Item { reference, groups: meeting[lane], near: depths[lane] };
+        }
+        count
+    }
+
+    /// Tests the triangles of a leaf against the rays of some groups.
+    #[inline(always)]
+    fn visit_leaf<S: Simd, const ANY: bool, const FAST: bool>(
+        &mut self,
+        simd: S,
+        tree: &WideBvh,
+        rays: &[Ray],
+        leaf: Reference,
+        groups: u32,
+    ) {
+        let block = tree.block(leaf);
+        let tolerance = if ANY { LARGE_TOLERANCE } else { TOLERANCE };
+        let triangles =
+            Triangles::new(simd, block, leaf.lanes(), &self.frame, &self.groups, tolerance);
+        let mut touched = 0;
+        let mut work = simd.load16(&self.work);
+        let mut left = triangles.possible & !triangles.unknown;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let meeting = triangles.groups(simd, lane, &self.groups) & groups;
+            touched |= meeting;
+            work = work.replaced(meeting, work + simd.splat16(1.0));
+            let primitive = f32::from_bits(block.primitives[lane]);
+            let mut left = meeting;
+            while left != 0 {
+                let group = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let doubtful =
+                    self.test::<S, ANY, FAST>(simd, &triangles, lane, group % GROUP, primitive);
+                if doubtful != 0 {
+                    self.settle::<ANY>(rays, tree, leaf, lane, group, doubtful);
+                }
+            }
+        }
+        let mut left = if FAST { 0 } else { triangles.possible & triangles.unknown };
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            touched |= groups;
+            for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
+                self.settle::<ANY>(rays, tree, leaf, lane, group, self.members[group]);
+            }
+        }
+
+        // How far the groups still have to look.
+        let mut left = touched;
+        while left != 0 {
+            let group = left.trailing_zeros() as usize % GROUP;
+            left &= left - 1;
+            self.groups.least[group] = simd.load16(&self.nearest[group]).least();
+        }
+        self.groups.look_again(simd);
+
+        // Give up groups that take more work than their rays would take one by one.
+        self.work = work.to_array();
+        let too_much = simd.splat16(MOST_WORK).less(work) & self.groups.live;
+        let mut left = too_much;
+        while left != 0 {
+            let group = left.trailing_zeros() as usize % GROUP;
+            left &= left - 1;
+            self.alone[group] = self.members[group];
+        }
+        self.groups.live &= !too_much;
+    }
+
+    /// Tests a triangle against the rays of a group and takes what is certainly hit. Returns the rays for which that is not certain.
+    #[inline(always)]
+    fn test<S: Simd, const ANY: bool, const FAST: bool>(
+        &mut self,
+        simd: S,
+        triangles: &Triangles,
+        lane: usize,
+        group: usize,
+        primitive: f32,
+    ) -> u32 {
+        let x = simd.load16(&self.slopes[0][group]);
+        let y = simd.load16(&self.slopes[1][group]);
+        let edge_a = triangles.function(simd, 0, lane, x, y);
+        let edge_b = triangles.function(simd, 1, lane, x, y);
+        let edge_c = triangles.function(simd, 2, lane, x, y);
+        let depth = triangles.function(simd, 3, lane, x, y);
+        let least = edge_a.smaller(edge_b).smaller(edge_c);
+        if FAST {
+            return self.take_fast::<S, ANY>(
+                simd,
+                least,
+                depth,
+                [edge_b, edge_c],
+                group,
+                primitive,
+            );
+        }
+        let (error, certainly) = (triangles.errors[lane], triangles.certain[lane]);
+        let nearest = simd.load16(&self.nearest[group]);
+        let tolerance = simd.splat16(triangles.tolerances[lane]);
+        let more = depth.mul_add(tolerance, depth);
+        if ANY {
+            let less = depth - depth * tolerance;
+            let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
+            let certain = simd.splat16(certainly).less(least)
+                & nearest.less(less)
+                & more.less(simd.splat16(self.start));
+            let blocked = simd.splat16(f32::INFINITY);
+            self.nearest[group] = nearest.replaced(possible & certain, blocked).to_array();
+            return possible & !certain;
+        }
+        let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
+        let doubtful = possible & !simd.splat16(certainly).less(least);
+        let hit = possible & !doubtful;
+
+        self.take(simd, hit, depth, [edge_b, edge_c], group, primitive);
+        doubtful
+    }
+
+    /// Takes what is hit as far as rounding allows to tell.
+    #[inline(always)]
+    fn take_fast<S: Simd, const ANY: bool>(
+        &mut self,
+        simd: S,
+        least: S::F16,
+        depth: S::F16,
+        weights: [S::F16; 2],
+        group: usize,
+        primitive: f32,
+    ) -> u32 {
+        let nearest = simd.load16(&self.nearest[group]);
+        let hit = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
+        if ANY {
+            let hit = hit & depth.less(simd.splat16(self.start));
+            let blocked = simd.splat16(f32::INFINITY);
+            self.nearest[group] = nearest.replaced(hit, blocked).to_array();
+        } else {
+            self.take(simd, hit, depth, weights, group, primitive);
+        }
+        0
+    }
+
+    /// Takes hits that are nearer than what the rays have.
+    #[inline(always)]
+    fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        hit: u32,
+        depth: S::F16,
+        weights: [S::F16; 2],
+        group: usize,
+        primitive: f32,
+    ) {
+        let nearest = simd.load16(&self.nearest[group]);
+        // The largest of the old and what is larger where hit: written whole, so that it can be read again at once.
+        let nowhere = simd.splat16(f32::NEG_INFINITY);
+        self.nearest[group] = nowhere.replaced(hit, depth).larger(nearest).to_array();
+        let primitives = simd.load16(&self.primitives[group]);
+        self.primitives[group] = primitives.replaced(hit, simd.splat16(primitive)).to_array();
+        let [for_b, for_c] = weights;
+        let weights = simd.load16(&self.weights[0][group]);
+        self.weights[0][group] = weights.replaced(hit, for_b).to_array();
+        let weights = simd.load16(&self.weights[1][group]);
+        self.weights[1][group] = weights.replaced(hit, for_c).to_array();
+    }
+
+    /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
+    #[cold]
+    #[inline(never)]
+    fn settle<const ANY: bool>(
+        &mut self,
+        rays: &[Ray],
+        tree: &WideBvh,
+        leaf: Reference,
+        lane: usize,
+        group: usize,
+        doubtful: u32,
+    ) {
+        let block = tree.block(leaf);
+        for place in (0..GROUP).filter(|place| doubtful >> place & 1 == 1) {
+            if self.nearest[group][place] == f32::INFINITY {
+                continue;
+            }
+            let Some(ray) = PreparedRay::new(&rays[usize::from(self.numbers[group][place])]) else {
+                continue;
+            };
+            let Some(hit) = block.intersect_one(&ray, lane) else { continue };
+            let nearest = &mut self.nearest[group][place];
+            if ANY {
+                *nearest = f32::INFINITY;
+                continue;
+            }
+            let depth = self.scales[group][place] / hit.t.abs();
+            if depth > GREATEST_VOLUME {
+                // At the origin itself: nothing is nearer, and one over the depth cannot tell how near it is.
+                self.alone[group] |= 1 << place;
+                *nearest = f32::INFINITY;
+            } else if depth > *nearest {
+                *nearest = depth;
+                self.primitives[group][place] = f32::from_bits(block.primitives[lane]);
+                self.weights[0][group][place] = hit.u * depth;
+                self.weights[1][group][place] = hit.v * depth;
+            }
+        }
+    }
+
+    /// Writes what was found.
+    #[inline(always)]
+    fn finish<S: Simd>(
+        &self,
+        simd: S,
+        rays: &[Ray],
+        hits: &mut [Option<Hit>],
+        rest: &mut Vec<usize>,
+        first: usize,
+    ) {
+        let one = simd.splat16(1.0);
+        for group in 0..hits.len().div_ceil(GROUP) {
+            let depth = one / simd.load16(&self.nearest[group]);
+            let t = (depth * simd.load16(&self.scales[group])).to_array();
+            let u = (depth * simd.load16(&self.weights[0][group])).to_array();
+            let v = (depth * simd.load16(&self.weights[1][group])).to_array();
+            let primitives = &self.primitives[group];
+            if let (false, Some(hits)) = (self.is_sorted, hits[group * GROUP..].first_chunk_mut()) {
+                let hits: &mut [Option<Hit>; GROUP] = hits;
+                for lane in 0..GROUP {
+                    hits[lane] = hit(t[lane], u[lane], v[lane], primitives[lane]);
+                }
+            } else {
+                for lane in 0..GROUP {
+                    let number = usize::from(self.numbers[group][lane]);
+                    if let Some(found) = hits.get_mut(number) {
+                        *found = hit(t[lane], u[lane], v[lane], primitives[lane]);
+                    }
+                }
+            }
+            if self.alone[group] != 0 {
+                let alone = (0..GROUP).filter(|lane| self.alone[group] >> lane & 1 == 1);
+                rest.extend(alone.map(|lane| first + usize::from(self.numbers[group][lane])));
+            }
+        }
+
+        // So near to the ray's end that only the exact test can tell.
+        if self.is_bounded {
+            for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+                if hit.is_some_and(|hit| hit.t > ray.t_max * NEARLY) {
+                    rest.push(first + number);
+                }
+            }
+        }
+    }
+}
+
+/// A hit, if there is one. `primitive` are the bits of its number.
+#[inline(always)]
+fn hit(t: f32, u: f32, v: f32, primitive: f32) -> Option<Hit> {
+    let primitive = primitive.to_bits();
+    (primitive != NONE).then_some(Hit { t, u, v, primitive, instance: 0 })
+}
+
+/// From this share of a ray's length on a hit may lie beyond its end.
+const NEARLY: f32 = 1.0 - 1.0 / 512.0;

@@ -1,0 +1,205 @@
+//! The triangles of a leaf as a packet sees them: everything that does not depend on the single ray.
+//!
+//! For rays through one point an edge function is linear in the ray's slopes, and so is one over the depth of the hit. So the work on a triangle is
+//! done once, for eight triangles at a time, and what is left for a ray are four linear functions.
+
+use super::frame::Frame;
+use super::groups::Groups;
+use crate::geometry::TriangleBlock;
+use crate::simd::{Float, Simd};
+
+/// One rounding.
+const ROUNDING: f32 = f32::EPSILON / 2.0;
+
+/// An edge function's error is at most so many roundings of the product of the largest coordinate, the longest edge and the steepest slope.
+const EDGE_ROUNDINGS: f32 = 40.0;
+
+/// The relative error of a depth is at most so many roundings of the same product over the triangle's distance from the origin's.
+const DEPTH_ROUNDINGS: f32 = 16.0;
+
+/// A corner's weight may be off by so much; in slivers that cannot be promised, and the triangle test of single rays decides.
+const WEIGHT_TOLERANCE: f32 = 1.0 / 512.0;
+
+/// What is outside of this range may have lost digits to underflow or come too near to overflow.
+const LEAST_VOLUME: f32 = 1e-30;
+/// See [`LEAST_VOLUME`].
+pub(super) const GREATEST_VOLUME: f32 = 1e30;
+
+/// Four linear functions of a ray's slopes for each of eight triangles: the edge functions opposite to each corner, divided so that their sum
+/// is one over the depth, and one over the depth.
+#[repr(C, align(64))]
+pub(super) struct Triangles {
+    /// For each function its factors for both slopes, and its constant.
+    pub(super) functions: [[[f32; 8]; 3]; 4],
+    /// The error of the edge functions.
+    pub(super) errors: [f32; 8],
+    /// Where all edge functions are larger than this, the ray certainly hits, and its depth is known well; infinite where it never is.
+    pub(super) certain: [f32; 8],
+    /// The relative error of one over the depth.
+    pub(super) tolerances: [f32; 8],
+    /// For each function and slope the triangles whose factor is negative.
+    negative: [[u32; 2]; 4],
+    /// The triangles that some ray may hit.
+    pub(super) possible: u32,
+    /// Those among them of which not even the orientation is known.
+    pub(super) unknown: u32,
+}
+
+/// A vector in space for each of eight triangles.
+type Vectors<F> = [F; 3];
+
+#[inline(always)]
+fn cross<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn sub<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn add<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn replaced<F: Float>(a: Vectors<F>, lanes: u32, b: Vectors<F>) -> Vectors<F> {
+    [a[0].replaced(lanes, b[0]), a[1].replaced(lanes, b[1]), a[2].replaced(lanes, b[2])]
+}
+
+#[inline(always)]
+fn largest<F: Float>(a: Vectors<F>) -> F {
+    a[0].abs().larger(a[1].abs()).larger(a[2].abs())
+}
+
+impl Triangles {
+    /// Prepares the triangles in the given lanes of a block. If a depth may have a larger relative error than `tolerance`, no hit is
+    /// [certain](Self::certain).
+    #[inline(always)]
+    pub(super) fn new<S: Simd>(
+        simd: S,
+        block: &TriangleBlock,
+        lanes: u32,
+        frame: &Frame,
+        groups: &Groups,
+        tolerance: f32,
+    ) -> Self {
+        // The corners in the packet's frame.
+        let a = frame.corners(simd, block, 0);
+        let b = frame.corners(simd, block, 1);
+        let c = frame.corners(simd, block, 2);
+
+        // Normals of the planes through the origin and each edge. Sum and difference are the same for the neighbour at the edge, but for
+        // the sign, so both find the same number.
+        let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
+        let edges = [cross(add(b, c), bc), cross(add(c, a), ca), cross(add(a, b), ab)];
+
+        // The plane of the triangle, from its two shorter edges; six times the volume that it spans with the origin.
+        let (first, second, third) = (largest(ab), largest(bc), largest(ca));
+        let longest = first.larger(second).larger(third);
+        let (first_longest, second_longest) =
+            (longest.less_or_equal(first), longest.less_or_equal(second));
+        let one = replaced(replaced(ab, first_longest, bc), second_longest, ca);
+        let other = replaced(replaced(bc, first_longest, ca), second_longest, ab);
+        let normal = cross(one, other);
+        let volume = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
+        let reciprocal = simd.splat8(1.0) / volume;
+        let half = reciprocal * simd.splat8(0.5);
+
+        // How inexact that is.
+        let reach = largest(a).larger(largest(b)).larger(largest(c));
+        let steepest = 1.0 + steepness(&groups.whole[0]) + steepness(&groups.whole[1]);
+        let misses = simd.splat8(2.0 * frame.offset);
+        let edge_roundings = reach * simd.splat8(EDGE_ROUNDINGS * ROUNDING) + misses;
+        let errors = edge_roundings * longest * simd.splat8(steepest) * half.abs();
+        let depth_roundings = reach * simd.splat8(DEPTH_ROUNDINGS * ROUNDING) + misses;
+        let tolerances = depth_roundings
+            * (largest(one) * largest(other))
+            * (simd.splat8(steepest) * reciprocal.abs());
+        let size = volume.abs();
+        let known = simd.splat8(LEAST_VOLUME).less_or_equal(size)
+            & size.less_or_equal(simd.splat8(GREATEST_VOLUME))
+            & tolerances.less_or_equal(simd.splat8(0.25));
+        let exact = known
+            & tolerances.less_or_equal(simd.splat8(tolerance))
+            & (errors * reach).less_or_equal(simd.splat8(WEIGHT_TOLERANCE));
+        let never = simd.splat8(f32::INFINITY);
+
+        // The functions, and whether any ray of the packet may be inside of all edges and meet the triangle in time.
+        let mut triangles = Self {
+            functions: [[[0.0; 8]; 3]; 4],
+            errors: errors.to_array(),
+            certain: never.replaced(exact, errors).to_array(),
+            tolerances: tolerances.to_array(),
+            negative: [[0; 2]; 4],
+            possible: lanes,
+            unknown: lanes & !known,
+        };
+        let zero = simd.splat8(0.0);
+        for number in 0..4 {
+            let (vectors, factor) =
+                if number < 3 { (edges[number], half) } else { (normal, reciprocal) };
+            let mut greatest = vectors[2] * factor;
+            triangles.functions[number][2] = greatest.to_array();
+            for axis in [1, 0] {
+                let factors = vectors[axis] * factor;
+                triangles.functions[number][axis] = factors.to_array();
+                let negative = factors.less(zero);
+                triangles.negative[number][axis] = negative;
+                let [least, most] = groups.whole[axis];
+                let slope = simd.splat8(most).replaced(negative, simd.splat8(least));
+                greatest = factors.mul_add(slope, greatest);
+            }
+            let least = if number < 3 { zero - errors } else { zero };
+            triangles.possible &= !greatest.less(least) | triangles.unknown;
+        }
+        triangles
+    }
+
+    /// The groups that may hit a triangle nearer than what they have.
+    #[inline(always)]
+    pub(super) fn groups<S: Simd>(&self, simd: S, lane: usize, groups: &Groups) -> u32 {
+        let least = self.greatest(simd, 0, lane, groups);
+        let least = self.greatest(simd, 1, lane, groups).smaller(least);
+        let least = self.greatest(simd, 2, lane, groups).smaller(least);
+        let nearer =
+            self.greatest(simd, 3, lane, groups) * simd.splat16(1.0 + self.tolerances[lane]);
+        let error = simd.splat16(-self.errors[lane]);
+        error.less_or_equal(least) & simd.load16(&groups.least).less(nearer)
+    }
+
+    /// A function of a triangle for sixteen rays of the given slopes.
+    #[inline(always)]
+    pub(super) fn function<S: Simd>(
+        &self,
+        simd: S,
+        number: usize,
+        lane: usize,
+        x: S::F16,
+        y: S::F16,
+    ) -> S::F16 {
+        let [for_x, for_y, constant] = &self.functions[number];
+        let part = simd.splat16(for_y[lane]).mul_add(y, simd.splat16(constant[lane]));
+        simd.splat16(for_x[lane]).mul_add(x, part)
+    }
+
+    /// The greatest value that a function of a triangle has in each group.
+    #[inline(always)]
+    fn greatest<S: Simd>(&self, simd: S, number: usize, lane: usize, groups: &Groups) -> S::F16 {
+        let function = &self.functions[number];
+        let mut greatest = simd.splat16(function[2][lane]);
+        for axis in [1, 0] {
+            let side = 1 - (self.negative[number][axis] >> lane & 1) as usize;
+            let slopes = simd.load16(&groups.slopes[axis][side]);
+            greatest = simd.splat16(function[axis][lane]).mul_add(slopes, greatest);
+        }
+        greatest
+    }
+}
+
+/// The larger of two slopes, without sign.
+#[inline(always)]
+fn steepness(slopes: &[f32; 2]) -> f32 {
+    slopes[0].abs().max(slopes[1].abs())
+}

@@ -1,0 +1,237 @@
+//! Rays that share their origin or go to one point: packets of every size and shape answer as single rays do.
+
+use raywood::{
+    BuildOptions, Geometry, Hit, Ray, SimdLevel, Spheres, Structure, StructureKind, TriangleMesh,
+    TriangleTest, Vec3,
+};
+use raywood_testkit::{Rng, nasty, oracle, shapes};
+
+fn build<G: Geometry>(geometry: G) -> Structure<G> {
+    Structure::build(StructureKind::BvhWide, geometry, &BuildOptions::default()).expect("it builds")
+}
+
+/// Holds batches against single rays: the same hits but for the last digits of the distance, exactly the same shadows.
+fn check<G: Geometry>(structure: &mut Structure<G>, rays: &[Ray], what: &str) {
+    for level in SimdLevel::available() {
+        structure.set_simd_level(level);
+        let what = format!("{what}, {} rays, {}", rays.len(), level.name());
+        let mut hits =
+            vec![Some(Hit { t: -1.0, u: 0.0, v: 0.0, primitive: 9, instance: 9 }); rays.len()];
+        structure.intersect_batch_serial(rays, &mut hits);
+        let mut blocked = vec![true; rays.len()];
+        structure.occluded_batch_serial(rays, &mut blocked);
+        for ((ray, hit), blocked) in rays.iter().zip(hits).zip(blocked) {
+            let expected = structure.intersect(ray);
+            let agree = match (&hit, &expected) {
+                (Some(hit), Some(expected)) => {
+                    let near = |a: f32, b: f32| (a - b).abs() <= 1.0 / 256.0;
+                    let same = hit.primitive == expected.primitive;
+                    let weights = near(hit.u, expected.u) && near(hit.v, expected.v);
+                    hit.agrees_with(expected)
+                        && ray.t_min <= hit.t
+                        && hit.t < ray.t_max
+                        && (weights || !same)
+                }
+                (hit, expected) => hit == expected,
+            };
+            assert!(agree, "{what}: {hit:?}, alone {expected:?}: {ray:?}");
+            assert_eq!(blocked, expected.is_some(), "{what}: {ray:?}");
+        }
+    }
+}
+
+/// Rays from a point through a rectangle of directions.
+fn pinhole(origin: Vec3, towards: Vec3, width: f32, count: usize) -> Vec<Ray> {
+    let forward = (towards - origin).normalize_or_zero();
+    let side = forward.cross(Vec3::new(0.3, 0.9, 0.1)).normalize_or_zero();
+    let up = side.cross(forward);
+    let columns = (count as f32).sqrt().ceil().max(1.0);
+    let ray = |number: usize| {
+        let x = (number as f32 % columns + 0.5) / columns - 0.5;
+        let y = ((number as f32 / columns).floor() + 0.5) / columns - 0.5;
+        Ray::new(origin, forward + width * (x * side + y * up))
+    };
+    (0..count).map(ray).collect()
+}
+
+/// Rays from points on such rays to where these start.
+fn returning(rays: &[Ray], rng: &mut Rng) -> Vec<Ray> {
+    rays.iter().map(|ray| Ray::between(ray.at(rng.range(0.2, 3.0)), ray.origin)).collect()
+}
+
+#[test]
+fn packets_of_every_size_agree_with_single_rays() {
+    let mesh = shapes::uv_sphere(40, Vec3::ZERO, 1.0);
+    let mut structure = build(&mesh);
+    let mut rng = Rng::new(1);
+    let sizes =
+        [1, 2, 15, 16, 17, 31, 32, 33, 47, 64, 100, 200, 255, 256, 257, 300, 511, 513, 1000];
+    for size in sizes {
+        let rays = pinhole(Vec3::new(1.9, 0.7, -2.1), Vec3::ZERO, 0.9, size);
+        check(&mut structure, &rays, "pinhole");
+        check(&mut structure, &returning(&rays, &mut rng), "returning");
+    }
+}
+
+#[test]
+fn packets_over_nasty_meshes_agree_with_single_rays_and_with_the_oracle() {
+    let mut rng = Rng::new(2);
+    for nasty in nasty::all() {
+        let bounds = nasty.mesh.bounds_of_all();
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        let size = half.max_element().max(1e-30);
+        let mut structure = build(&nasty.mesh);
+        for distance in [0.0, 0.5, 1.2, 4.0] {
+            let origin = center + distance * size * rng.direction();
+            for width in [0.02, 0.5, 2.0] {
+                let rays = pinhole(origin, center + 0.3 * size * rng.in_cube(), width, 290);
+                check(&mut structure, &rays, nasty.name);
+                check(&mut structure, &returning(&rays, &mut rng), nasty.name);
+                let mut hits = vec![None; rays.len()];
+                structure.intersect_batch(&rays, &mut hits);
+                for (ray, hit) in rays.iter().zip(hits).step_by(17) {
+                    if hit.is_none() {
+                        oracle::check_closest(&nasty.mesh, ray, hit)
+                            .unwrap_or_else(|error| panic!("{}: {error}", nasty.name));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_of_any_kind_among_others_change_nothing_for_these() {
+    let mesh = shapes::soup(3000, 0.2, 3);
+    let mut structure = build(&mesh);
+    let mut rng = Rng::new(4);
+    let origin = Vec3::new(0.1, 0.2, -3.0);
+    let plain = pinhole(origin, Vec3::ZERO, 0.8, 512);
+    let strange: &[fn(&mut Rng, &mut Ray)] = &[
+        |_, ray| ray.direction = Vec3::ZERO,
+        |_, ray| ray.direction.x = f32::NAN,
+        |_, ray| ray.origin.y = f32::NAN,
+        |_, ray| ray.origin.z = f32::INFINITY,
+        |_, ray| ray.t_max = f32::NAN,
+        |_, ray| ray.t_max = -1.0,
+        |_, ray| ray.t_min = f32::NAN,
+        |rng, ray| ray.t_min = rng.range(0.5, 4.0),
+        |rng, ray| ray.t_max = rng.range(0.5, 4.0),
+        |rng, ray| ray.direction = rng.direction(),
+        |rng, ray| ray.direction = -1e-20 * rng.direction(),
+        |rng, ray| ray.origin = 2.0 * rng.in_cube(),
+        |_, ray| ray.direction = -ray.direction,
+        |_, ray| (ray.direction, ray.t_max) = (1e20 * ray.direction, 1e-20),
+    ];
+    for every in [2, 7, 40, 1000] {
+        let mut rays = plain.clone();
+        for (number, ray) in rays.iter_mut().enumerate() {
+            if number % every == every / 2 {
+                strange[number / every % strange.len()](&mut rng, ray);
+            }
+        }
+        check(&mut structure, &rays, "with strange ones");
+    }
+    for change in strange {
+        let mut rays = plain.clone();
+        rays.iter_mut().for_each(|ray| change(&mut rng, ray));
+        check(&mut structure, &rays, "all strange");
+    }
+
+    // All directions from one point; lengths of all sizes; ends of all kinds.
+    let rays: Vec<_> = (0..600).map(|_| Ray::new(0.1 * origin, rng.direction())).collect();
+    check(&mut structure, &rays, "all directions");
+    let rays: Vec<_> = plain
+        .iter()
+        .map(|ray| {
+            let length = 10f32.powf(rng.range(-12.0, 12.0));
+            Ray { direction: length * ray.direction, t_max: rng.range(0.5, 8.0) / length, ..*ray }
+        })
+        .collect();
+    check(&mut structure, &rays, "of all lengths");
+    let spawned: Vec<_> = returning(&plain, &mut rng)
+        .into_iter()
+        .map(|ray| ray.with_interval(0.0, 1.0 - 1.0 / 4096.0))
+        .collect();
+    check(&mut structure, &spawned, "ending a little before");
+}
+
+#[test]
+fn packets_do_not_slip_through_edges() {
+    let mesh = shapes::uv_sphere(64, Vec3::new(0.3, -0.2, 0.1), 1.0);
+    let structure = build(&mesh);
+    for seed in 0..40 {
+        // Through vertices and points of edges, from the inside.
+        let mut rng = Rng::new(seed);
+        let origin = Vec3::new(0.3, -0.2, 0.1) + 0.5 * rng.in_cube();
+        let towards = rng.direction();
+        let mut rays = Vec::new();
+        for triangle in 0..mesh.len() as u32 {
+            let [a, b, _] = mesh.triangle(triangle).expect("a triangle");
+            let target = if triangle % 2 == 0 { a } else { a + rng.unit() * (b - a) };
+            if (target - origin).normalize_or_zero().dot(towards) > 0.7 {
+                rays.push(Ray::new(origin, target - origin));
+            }
+        }
+        let mut hits = vec![None; rays.len()];
+        structure.intersect_batch(&rays, &mut hits);
+        let mut blocked = vec![false; rays.len()];
+        structure.occluded_batch(&rays, &mut blocked);
+        for ((ray, hit), blocked) in rays.iter().zip(hits).zip(blocked) {
+            assert!(hit.is_some() && blocked, "{ray:?} slips through");
+        }
+    }
+}
+
+#[test]
+fn packets_meet_what_is_no_triangle() {
+    let mut rng = Rng::new(5);
+    let spheres: Vec<_> = (0..200).map(|_| (rng.in_cube(), 0.1)).collect();
+    let spheres = Spheres::new(spheres);
+    let mut structure = build(spheres.expect("spheres"));
+    let rays = pinhole(Vec3::new(0.0, 0.5, -3.0), Vec3::ZERO, 0.8, 300);
+    check(&mut structure, &rays, "spheres");
+}
+
+#[test]
+fn the_fast_test_differs_near_edges_alone() {
+    let mesh = shapes::uv_sphere(40, Vec3::ZERO, 1.0);
+    let options = BuildOptions { triangle_test: TriangleTest::Fast, ..Default::default() };
+    let fast = Structure::build(StructureKind::BvhWide, &mesh, &options).expect("it builds");
+    let rays = pinhole(Vec3::new(1.9, 0.7, -2.1), Vec3::ZERO, 0.9, 4096);
+    let mut hits = vec![None; rays.len()];
+    fast.intersect_batch(&rays, &mut hits);
+    let exact = build(&mesh);
+    let differ = rays.iter().zip(hits).filter(|(ray, hit)| match (hit, exact.intersect(ray)) {
+        (Some(hit), Some(expected)) => !hit.agrees_with(&expected),
+        (hit, expected) => hit.is_some() != expected.is_some(),
+    });
+    assert!(differ.count() <= 4);
+}
+
+#[test]
+fn answers_do_not_depend_on_threads() {
+    let mesh = shapes::soup(2000, 0.2, 8);
+    let structure = build(&mesh);
+    let rays = pinhole(Vec3::new(0.1, 0.2, -3.0), Vec3::ZERO, 0.8, 3000);
+    let mut expected = vec![None; rays.len()];
+    structure.intersect_batch_serial(&rays, &mut expected);
+    let mut hits = vec![None; rays.len()];
+    structure.intersect_batch(&rays, &mut hits);
+    assert!(hits == expected);
+}
+
+trait BoundsOfAll {
+    fn bounds_of_all(&self) -> raywood::Aabb;
+}
+
+impl BoundsOfAll for TriangleMesh {
+    fn bounds_of_all(&self) -> raywood::Aabb {
+        let empty =
+            raywood::Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
+        (0..self.len() as u32).map(|p| self.bounds(p)).fold(empty, |all, b| raywood::Aabb {
+            min: all.min.min(b.min),
+            max: all.max.max(b.max),
+        })
+    }
+}
