@@ -22,7 +22,8 @@
 //! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]; its default, the [`WideBvh`], is traced by vector
 //!   instructions ([`SimdLevel`]) and the fastest for slices of rays.
-//! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked.
+//! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
+//!   walk together.
 //!
 //! # Contracts
 //!
@@ -64,6 +65,6 @@ pub use simd::{SimdLevel, SimdLevelError};
 pub use stats::{Level, NodeView, StructureStats};
 pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};
 pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh};
-pub use traverse::{Counts, Probe};
+pub use traverse::{Coherence, Counts, Probe};
 pub use validate::ValidationError;
 pub use vec3::Vec3;

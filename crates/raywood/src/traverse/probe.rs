@@ -30,6 +30,13 @@ pub trait Probe {
     fn references(&mut self, count: usize) {
         let _ = count;
     }
+
+    /// A packet of so many rays entered a node, and so many of them hit it: a number that takes a test of every ray to find, and so is found
+    /// only if asked for. [`nodes`](Self::nodes) is told of the node, too.
+    #[inline]
+    fn packet_node(&mut self, rays: usize, hitting: impl FnOnce() -> usize) {
+        let _ = (rays, hitting);
+    }
 }
 
 impl Probe for () {}
