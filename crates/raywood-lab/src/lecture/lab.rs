@@ -9,8 +9,8 @@ use raywood_scene::Scene;
 use super::LectureError;
 use crate::ray_sets::{RayKind, RaySet, ray_sets};
 
-/// Rays that travel together: the 8 x 8 pixels of a block.
-pub(super) const PACKET: usize = 64;
+/// Rays that are kept together: the 8 x 8 pixels of a block.
+const PACKET: usize = 64;
 
 /// The scenes to measure, and whether there is time.
 pub struct Lab<'a> {
@@ -125,11 +125,7 @@ impl<'a> Prepared<'a> {
         let view = default_view(&scene, aspect);
         let mut sets = ray_sets(&scene, &view, aspect, pixels)?;
         for set in &mut sets {
-            let all = set.rays.len() / PACKET;
-            let some = packets.min(all);
-            let chosen = (0..some).map(|i| i * all / some);
-            let rays = |packet: usize| &set.rays[packet * PACKET..][..PACKET];
-            set.rays = chosen.flat_map(rays).copied().collect();
+            set.keep_runs(packets, PACKET);
         }
         Ok(Self { scene, sets })
     }

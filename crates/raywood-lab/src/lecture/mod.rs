@@ -11,7 +11,6 @@ mod growth;
 mod lab;
 mod measure;
 mod nodes;
-mod packet_walk;
 mod resolution;
 mod sah;
 mod shapes;

@@ -20,6 +20,13 @@ pub fn default_scenes(quick: bool) -> Vec<Scene> {
     builtins.chain([soup(if quick { 4_000 } else { 200_000 })]).collect()
 }
 
+/// A landscape of few triangles, each of which covers thousands of pixels.
+pub(super) fn coarse_terrain() -> Scene {
+    // A built-in scene that does not exist would be missed by the tests.
+    let scene = builtin("terrain?n=32").unwrap_or_default();
+    Scene { name: "coarse terrain".to_owned(), ..scene }
+}
+
 /// So many random triangles in a cube. Their area in all is the same for any number, so that a ray flies equally far before it hits one.
 pub(super) fn soup(count: usize) -> Scene {
     let mut rng = Rng::new(7);
