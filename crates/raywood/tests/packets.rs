@@ -151,6 +151,18 @@ fn rays_of_all_octants_and_intervals_travel_together() {
 }
 
 #[test]
+fn a_ray_along_a_face_is_not_bounded_by_it() {
+    // Its distance to the face's plane is zero times infinity: no number, whatever the interval of the packet says of the others.
+    let mesh = shapes::grid_box(3, [0.0, -1.0, -1.0].into(), [1.0; 3].into());
+    let along = Ray::new([0.0, 0.1, 5.0], [0.0, 0.0, 1.0]).with_interval(-10.0, -1.0);
+    let miss = Ray::new([-1.0, 5.0, 5.0], [1.0, 0.01, 1.0]).with_interval(-10.0, -1.0);
+    for builder in BUILDERS {
+        let tree = build(builder, &mesh);
+        assert_eq!(check("along a face", &tree, &mesh, &[miss, along], 2), 1);
+    }
+}
+
+#[test]
 fn intervals_of_different_lengths() {
     let mesh = shapes::soup(3000, 0.1, 5);
     let tree = build(Builder::SahBinned, &mesh);
