@@ -32,13 +32,13 @@ fn measure(lab: &Lab<'_>) -> Result<Findings, LectureError> {
     }
     all.extend(races(&simplest, lab.is_quick(), lab.rounds())?);
     let method = format!(
-        "Rays of {} pixels of a picture of {}, in blocks of 16 x 16 spread evenly over it, and those that follow from what they hit, the shadow \
-         rays of a block towards one light. Each is traced through the binary tree alone, and in packets of 4 x 4, 8 x 8 and 16 x 16 rays: \
-         plain code without vector instructions on either side, the same nodes, the same tests of triangles. A packet visits a node if at least one of its \
-         rays hits the box before its closest hit so far. Coherence is the number of rays in the packet over the average number that hit a \
-         visited node: 1 is perfect, as many as there are rays means that they share nothing. The rays per visited node bound what packets can \
-         save of the visits, not of the tests of triangles, which every ray has to itself. Besides the scenes asked for there is a coarse terrain, where \
-         a triangle covers thousands of pixels: the simplest case for packets. One thread, medians of {} rounds taken in turn; {}.",
+        "Rays of {} pixels of a picture of {}, in blocks of 16 x 16 spread evenly over it, and those that follow from what they hit, 256 shadow \
+         rays in a row towards one light. All are traced through one binary tree, one by one and in packets of 4 x 4, 8 x 8 and 16 x 16, by plain \
+         code: no vector instructions on either side. A packet visits a node if at least one of its rays hits the box before its closest hit so \
+         far. Coherence is the number of rays in the packet over the average number that hit a visited node: 1 is perfect, as many as there are \
+         rays means that they share nothing. The rays per visited node bound what packets can save of the visits, but not of the tests of \
+         triangles, which every ray has to itself. Besides the scenes asked for there is a coarse terrain, where a triangle covers thousands of \
+         pixels: the simplest case for packets. One thread, medians of {} rounds taken in turn; {}.",
         lab.pick("2,048", "32,768"),
         lab.pick("320 x 200", "1280 x 800"),
         lab.rounds(),
