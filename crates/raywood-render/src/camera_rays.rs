@@ -102,10 +102,14 @@ impl CameraRays {
     #[inline]
     pub fn pixel_rays(&self, x: u32, y: u32, samples: u32) -> impl Iterator<Item = Ray> {
         let pattern = PixelSamples::new(x, y, samples);
-        (0..samples).map(move |index| {
-            let [dx, dy] = pattern.offset(index);
-            self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
-        })
+        (0..samples).map(move |index| self.sample_ray(x, y, &pattern, index))
+    }
+
+    /// The primary ray number `index` of the pixel in column `x` and row `y`.
+    #[inline]
+    pub(crate) fn sample_ray(&self, x: u32, y: u32, pattern: &PixelSamples, index: u32) -> Ray {
+        let [dx, dy] = pattern.offset(index);
+        self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
     }
 
     /// Where points appear in the picture: the inverse of [`ray`](Self::ray).

@@ -17,8 +17,6 @@ pub(crate) struct Lights {
 pub(crate) struct Illumination {
     /// Towards the light, unit length.
     pub(crate) direction: Vec3,
-    /// Where the light is; `None` if infinitely far.
-    pub(crate) position: Option<Vec3>,
     /// What a white diffuse surface facing the light sends out.
     pub(crate) intensity: Rgb,
 }
@@ -57,7 +55,7 @@ pub(crate) fn illuminate(light: &Light, point: Vec3) -> Option<Illumination> {
             Some(at_point)
         }
         LightKind::Directional { direction } => {
-            Some(Illumination { direction: -direction, position: None, intensity: light.intensity })
+            Some(Illumination { direction: -direction, intensity: light.intensity })
         }
         LightKind::Ambient => None,
     }
@@ -72,7 +70,8 @@ fn from_position(position: Vec3, point: Vec3, intensity: Rgb) -> Option<Illumina
     if !(distance > 0.0 && distance.is_finite()) {
         return None;
     }
-    let direction = towards / distance;
-    let intensity = (intensity / distance) / distance;
-    intensity.is_finite().then_some(Illumination { direction, position: Some(position), intensity })
+    let reciprocal = 1.0 / distance;
+    let intensity = (reciprocal * intensity) * reciprocal;
+    let direction = reciprocal * towards;
+    intensity.is_finite().then_some(Illumination { direction, intensity })
 }

@@ -79,26 +79,26 @@ impl<'a> Surface<'a> {
     pub(crate) fn mirrored(&self, direction: Vec3) -> Vec3 {
         keep_on_side(reflect(direction, self.normal), self.geometric_normal)
     }
+}
 
-    /// How much a light in direction `to_light` (unit length) counts by its angle: the cosine, zero from behind.
-    ///
-    /// Light from below the true surface does not count, whatever the normal for shading says. So that this does not
-    /// show as dark triangles along the edge of the shadow, it fades out before: Chiang, Li and Burley, "Taming the
-    /// Shadow Terminator", 2019.
-    #[inline]
-    pub(crate) fn light_cosine(&self, to_light: Vec3) -> f32 {
-        let geometric = to_light.dot(self.geometric_normal);
-        let shading = to_light.dot(self.normal);
-        if geometric <= 0.0 || shading <= 0.0 {
-            return 0.0;
-        }
-        let bend = self.normal.dot(self.geometric_normal);
-        let ratio = geometric / (shading * bend);
-        if ratio >= 1.0 {
-            return shading;
-        }
-        shading * ratio * (1.0 + ratio * (1.0 - ratio))
+/// How much a light in direction `to_light` counts by its angle: the cosine with the normal for shading, zero from behind. All of unit length.
+///
+/// Light from below the true surface does not count, whatever the normal for shading says. So that this does not
+/// show as dark triangles along the edge of the shadow, it fades out before: Chiang, Li and Burley, "Taming the
+/// Shadow Terminator", 2019.
+#[inline]
+pub(crate) fn light_cosine(to_light: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
+    let geometric = to_light.dot(geometric_normal);
+    let shading = to_light.dot(normal);
+    if geometric <= 0.0 || shading <= 0.0 {
+        return 0.0;
     }
+    let bend = normal.dot(geometric_normal);
+    let ratio = geometric / (shading * bend);
+    if ratio >= 1.0 {
+        return shading;
+    }
+    shading * ratio * (1.0 + ratio * (1.0 - ratio))
 }
 
 /// A direction pushed to the side of the surface that `normal` points to, if it is not there yet.

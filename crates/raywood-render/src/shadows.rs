@@ -1,41 +1,21 @@
 //! How much of a light reaches a point: the shadow ray, which what is transparent colours and weakens.
 
-use raywood::{Aabb, Ray, SurfacePoint};
-use raywood_scene::{Light, Rgb};
+use raywood::{Aabb, Ray, SurfacePoint, Vec3};
+use raywood_scene::{Light, LightKind, Rgb};
 
 use crate::PreparedScene;
 use crate::fresnel::dielectric;
-use crate::lights::{Illumination, illuminate};
+use crate::lights::illuminate;
 use crate::prepared::SurfaceMaterial;
 use crate::stats::RayCounts;
 
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 const MOST_CROSSINGS: u32 = 32;
 
-/// What is to be done to find out how much of a light reaches a point.
-pub(crate) enum Shadow {
-    /// Any hit of the ray decides: nothing on the way can be transparent.
-    Plain(Ray),
-    /// What the ray hits may let light through: see [`visibility`].
-    Coloured(Ray),
-}
-
-impl Shadow {
-    /// The ray from the point towards the light. With `opaque`, everything hides light.
-    pub(crate) fn of(
-        prepared: &PreparedScene<'_>,
-        point: &SurfacePoint,
-        light: &Illumination,
-        opaque: bool,
-    ) -> Self {
-        let ray = ray_towards(point, light);
-        let transmissive = prepared.transmissive_bounds();
-        if opaque || !transmissive.iter().any(|bounds| may_cross(&ray, bounds)) {
-            Self::Plain(ray)
-        } else {
-            Self::Coloured(ray)
-        }
-    }
+/// Whether what a ray hits may let light through.
+#[inline]
+pub(crate) fn light_may_pass(prepared: &PreparedScene<'_>, ray: &Ray) -> bool {
+    prepared.transmissive_bounds().iter().any(|bounds| may_cross(ray, bounds))
 }
 
 /// The share of the light that reaches the start of a ray towards it; zero in all channels if something opaque is between.
@@ -46,7 +26,7 @@ impl Shadow {
 pub(crate) fn visibility(
     prepared: &PreparedScene<'_>,
     mut ray: Ray,
-    light: &Illumination,
+    light: &Light,
     cutoff: f32,
     counts: &mut RayCounts,
 ) -> Rgb {
@@ -65,22 +45,27 @@ pub(crate) fn visibility(
         if share.max_element() < cutoff {
             return Rgb::ZERO;
         }
-        ray = ray_towards(&surface, light);
+        ray = ray_towards_light(light, surface.origin_towards(ray.direction));
     }
     Rgb::ZERO
 }
 
 /// The ray that asks whether a light reaches a surface; `None` where the light does not shine.
 pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Option<Ray> {
-    illuminate(light, point.position).map(|light| ray_towards(point, &light))
+    let towards = illuminate(light, point.position)?.direction;
+    Some(ray_towards_light(light, point.origin_towards(towards)))
 }
 
-/// The ray from a surface to a light.
+/// The ray from where shadow rays start to a light.
 #[inline]
-fn ray_towards(point: &SurfacePoint, light: &Illumination) -> Ray {
-    match light.position {
-        Some(position) => point.spawn_towards(position),
-        None => point.spawn(light.direction),
+pub(crate) fn ray_towards_light(light: &Light, origin: Vec3) -> Ray {
+    match light.kind {
+        LightKind::Point { position } | LightKind::Spot { position, .. } => {
+            Ray::short_of(origin, position)
+        }
+        LightKind::Directional { direction } => Ray::new(origin, -direction),
+        // It comes from all sides; nobody asks.
+        LightKind::Ambient => Ray::new(origin, Vec3::ZERO),
     }
 }
 

@@ -23,6 +23,26 @@ pub(crate) struct Tile {
     pub(crate) height: u32,
 }
 
+/// The edge of the blocks of pixels that a tile is divided into.
+const BLOCK_SIZE: u32 = 4;
+
+impl Tile {
+    /// Its pixels, block after block of 4 x 4, so that any sixteen that follow each other are close together: their numbers in the tile, and
+    /// their columns and rows in the image.
+    pub(crate) fn pixels_in_blocks(&self) -> impl Iterator<Item = (u32, [u32; 2])> {
+        let Self { x, y, width, height } = *self;
+        let blocks = |size: u32| (0..size).step_by(BLOCK_SIZE as usize);
+        blocks(height)
+            .flat_map(move |row| blocks(width).map(move |column| [column, row]))
+            .flat_map(move |[column, row]| {
+                let rows = row..(row + BLOCK_SIZE).min(height);
+                let columns = column..(column + BLOCK_SIZE).min(width);
+                rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
+            })
+            .map(move |[column, row]| (row * TILE_SIZE + column, [x + column, y + row]))
+    }
+}
+
 /// Something for each of a tile's pixels, row after row, each row [`TILE_SIZE`] long.
 pub(crate) type TileOf<T> = [T; (TILE_SIZE * TILE_SIZE) as usize];
 

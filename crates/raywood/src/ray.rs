@@ -38,6 +38,13 @@ impl Ray {
         Self { origin: from, t_min: 0.0, direction: to.into() - from, t_max: 1.0 }
     }
 
+    /// As [`between`](Self::between), but ends a 4096th of the way before `to`, so that a surface that this lies on does not count.
+    #[inline]
+    pub fn short_of(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
+        const END: f32 = 1.0 - 1.0 / 4096.0;
+        Self::between(from, to).with_interval(0.0, END)
+    }
+
     /// The same ray over another interval, `t_min <= t < t_max`.
     #[inline]
     pub fn with_interval(self, t_min: f32, t_max: f32) -> Self {

@@ -23,17 +23,21 @@ impl SurfacePoint {
     #[inline]
     pub fn spawn(&self, direction: impl Into<Vec3>) -> Ray {
         let direction = direction.into();
-        Ray::new(self.offset(direction.dot(self.normal)), direction)
+        Ray::new(self.origin_towards(direction), direction)
     }
 
     /// A ray from this point towards `target`, where `t` is 1, that hits neither the surface it starts on nor one that the target lies
-    /// on: it ends a 4096th of the way before.
+    /// on: it ends [a little before](Ray::short_of).
     #[inline]
     pub fn spawn_towards(&self, target: impl Into<Vec3>) -> Ray {
-        const END: f32 = 1.0 - 1.0 / 4096.0;
         let target = target.into();
-        let side = (target - self.position).dot(self.normal);
-        Ray::between(self.offset(side), target).with_interval(0.0, END)
+        Ray::short_of(self.origin_towards(target - self.position), target)
+    }
+
+    /// Where rays start that leave this point to the side that `direction` points to: for whoever sends many.
+    #[inline]
+    pub fn origin_towards(&self, direction: impl Into<Vec3>) -> Vec3 {
+        self.offset(direction.into().dot(self.normal))
     }
 
     /// The position moved off the surface to the given side of the normal, each coordinate rounded away from it.

@@ -1,0 +1,39 @@
+//! Whitted's ray tracing: Turner Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980.
+//!
+//! Each hit is lit by every light that a shadow ray reaches, and followed further where the surface mirrors or lets light
+//! through. Light from all other directions is what the ambient light says.
+//!
+//! Rays are not followed one by one but in waves of those that belong together: the primary rays of a tile, the mirrored ones of a depth, the
+//! shadow rays of a light. Structures trace such rays as packets.
+
+mod direct;
+mod queue;
+mod shade;
+mod waves;
+
+use std::cell::RefCell;
+
+use super::{Frame, Integrator};
+use crate::stats::RayCounts;
+use crate::tiles::{Tile, TilePixels};
+use waves::{Scratch, Waves};
+
+/// The registry's line for this method.
+pub(super) const INTEGRATOR: Integrator = Integrator {
+    name: "whitted",
+    help: "direct light with sharp shadows, mirror reflection and refraction (Whitted 1980)",
+    render_tile,
+};
+
+thread_local! {
+    /// Kept from tile to tile, so that none asks for memory.
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+fn render_tile(frame: &Frame<'_>, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
+    SCRATCH.with_borrow_mut(|scratch| {
+        let mut waves = Waves::new(frame, pixels, scratch);
+        waves.follow_all(tile);
+        waves.counts()
+    })
+}

@@ -1,0 +1,87 @@
+//! Rays that wait for their turn, sorted by what they are: rays that belong together are fastest traced together.
+
+use raywood::Ray;
+use raywood_scene::Rgb;
+
+/// How many rays are traced together: as many as structures take in one packet.
+pub(super) const WAVE: usize = 256;
+
+/// How a ray came here.
+#[derive(Clone, Copy)]
+pub(super) struct Path {
+    /// The pixel of the tile that the light ends up in.
+    pub(super) pixel: u32,
+    /// What light along the ray counts in the pixel.
+    pub(super) weight: Rgb,
+    /// Absorption of what the ray runs through, per unit of length.
+    pub(super) absorption: Rgb,
+}
+
+/// Rays and the paths that they go on.
+#[derive(Default)]
+pub(super) struct Queue {
+    pub(super) rays: Vec<Ray>,
+    pub(super) paths: Vec<Path>,
+}
+
+impl Queue {
+    #[inline]
+    pub(super) fn push(&mut self, ray: Ray, path: Path) {
+        self.rays.push(ray);
+        self.paths.push(path);
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+    }
+
+    /// Moves the last rays, a wave of them at most, to another queue, whose own are forgotten.
+    fn move_wave(&mut self, wave: &mut Self) {
+        let start = self.rays.len().saturating_sub(WAVE);
+        wave.clear();
+        wave.rays.extend(self.rays.drain(start..));
+        wave.paths.extend(self.paths.drain(start..));
+    }
+}
+
+/// The rays that follow from others, by their depth and by what they are. Mirrored rays that come from one plane run as if from one point,
+/// the mirror image of the eye; among others they would not.
+#[derive(Default)]
+pub(super) struct Waiting {
+    /// Of each depth those that were mirrored and those that were let through.
+    depths: Vec<[Queue; 2]>,
+}
+
+impl Waiting {
+    /// Forgets all rays and makes room for those of the given depths.
+    pub(super) fn reset(&mut self, max_depth: u32) {
+        self.depths.resize_with(max_depth as usize + 2, Default::default);
+        self.depths.as_flattened_mut().iter_mut().for_each(Queue::clear);
+    }
+
+    /// Where the rays of a depth wait: the mirrored ones, those let through.
+    pub(super) fn at(&mut self, depth: u32) -> &mut [Queue; 2] {
+        &mut self.depths[depth as usize]
+    }
+
+    /// Moves a full wave of rays to `wave` and tells their depth. The deepest come first, so that no queue ever holds two waves, however
+    /// often light is split.
+    pub(super) fn take_full(&mut self, wave: &mut Queue) -> Option<u32> {
+        let number =
+            self.depths.as_flattened().iter().rposition(|queue| queue.rays.len() >= WAVE)?;
+        Some(self.take(number, wave))
+    }
+
+    /// Moves the rays that others may follow from soonest to `wave` and tells their depth: as many as possible are then together when their
+    /// own followers have their turn.
+    pub(super) fn take_first(&mut self, wave: &mut Queue) -> Option<u32> {
+        let number = self.depths.as_flattened().iter().position(|queue| !queue.rays.is_empty())?;
+        Some(self.take(number, wave))
+    }
+
+    fn take(&mut self, number: usize, wave: &mut Queue) -> u32 {
+        self.depths.as_flattened_mut()[number].move_wave(wave);
+        (number / 2) as u32
+    }
+}
