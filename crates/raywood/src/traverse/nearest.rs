@@ -5,7 +5,11 @@ use crate::{Geometry, Hit, PreparedRay, PrimitiveHit};
 
 /// The hit of a ray with one primitive; depends on nothing else.
 #[inline]
-fn hit<G: Geometry>(geometry: &G, ray: &PreparedRay, primitive: u32) -> Option<PrimitiveHit> {
+pub(crate) fn hit<G: Geometry>(
+    geometry: &G,
+    ray: &PreparedRay,
+    primitive: u32,
+) -> Option<PrimitiveHit> {
     inside_own_bounds(ray, geometry.intersect(primitive, ray)?, &geometry.bounds(primitive))
 }
 

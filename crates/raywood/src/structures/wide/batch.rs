@@ -36,7 +36,8 @@ impl<G: Geometry, const FAST: bool> Kernel for Closest<'_, G, FAST> {
         for (number, (piece, hits)) in pieces.enumerate() {
             let first = number * packet::RAYS;
             simd.prefetch_slice(next_piece(rays, first));
-            packet::closest::<S, FAST>(simd, tree, piece, hits, &mut scratch, &mut rest, first);
+            let piece = packet::Piece { tree, geometry, rays: piece, first };
+            packet::closest::<S, G, FAST>(simd, &piece, hits, &mut scratch, &mut rest);
         }
         for &number in &rest {
             hits[number] = None;
@@ -76,7 +77,8 @@ impl<G: Geometry, const FAST: bool> Kernel for Any<'_, G, FAST> {
         for (number, (piece, occluded)) in pieces.enumerate() {
             let first = number * packet::RAYS;
             simd.prefetch_slice(next_piece(rays, first));
-            packet::any::<S, FAST>(simd, tree, piece, occluded, &mut scratch, &mut rest, first);
+            let piece = packet::Piece { tree, geometry, rays: piece, first };
+            packet::any::<S, G, FAST>(simd, &piece, occluded, &mut scratch, &mut rest);
         }
         for &number in &rest {
             occluded[number] = false;

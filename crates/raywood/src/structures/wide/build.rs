@@ -26,8 +26,6 @@ pub(super) fn build<G: Geometry>(
     };
     let tree = Bvh2::build(geometry, &options)?;
     let plan = Plan::new(&tree);
-    let only_triangles =
-        (0..geometry.len() as u32).all(|primitive| geometry.triangle(primitive).is_some());
     let mut builder =
         Wide { geometry, tree: &tree, plan: &plan, depth: 0, arena: Arena::default() };
     let root = match tree.nodes() {
@@ -50,7 +48,6 @@ pub(super) fn build<G: Geometry>(
         bounds,
         primitives,
         triangle_test,
-        only_triangles,
         reach,
         depth,
         root,

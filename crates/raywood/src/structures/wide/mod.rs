@@ -34,8 +34,6 @@ pub struct WideBvh {
     bounds: Aabb,
     primitives: u32,
     triangle_test: TriangleTest,
-    /// Whether all primitives are triangles.
-    only_triangles: bool,
     /// How far the boxes reach from zero along any axis.
     reach: f32,
     /// How many nodes lie on the longest way from the root to a leaf.

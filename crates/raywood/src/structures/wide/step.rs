@@ -103,7 +103,7 @@ fn doubtful_blocks<G: Geometry>(
 
 /// The lanes of a leaf that hold primitives which are no triangles.
 #[inline(always)]
-fn others<G: Geometry>(geometry: &G, primitives: &[u32], leaf: Reference) -> u32 {
+pub(super) fn others<G: Geometry>(geometry: &G, primitives: &[u32], leaf: Reference) -> u32 {
     if !leaf.is_mixed() {
         return 0;
     }

@@ -13,8 +13,10 @@ mod triangles;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
+use super::step::others;
 use crate::simd::{Float, Simd};
-use crate::{Hit, PreparedRay, Ray};
+use crate::traverse::nearest::hit as hit_one;
+use crate::{Geometry, Hit, PreparedRay, Ray};
 use frame::Frame;
 use groups::Groups;
 use triangles::{GREATEST_VOLUME, Triangles};
@@ -78,6 +80,16 @@ struct Item {
     near: f32,
 }
 
+/// Rays for a packet, and what they are sent through.
+pub(super) struct Piece<'a, G> {
+    pub(super) tree: &'a WideBvh,
+    pub(super) geometry: &'a G,
+    /// At most 256.
+    pub(super) rays: &'a [Ray],
+    /// The number of the first among all rays of the batch.
+    pub(super) first: usize,
+}
+
 /// The memory that tracing packets needs, for one packet after the other.
 pub(super) struct Scratch {
     packet: Box<Packet>,
@@ -93,42 +105,34 @@ impl Scratch {
 
 /// Finds the closest hits of rays that share their origin. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn closest<S: Simd, const FAST: bool>(
+pub(super) fn closest<S: Simd, G: Geometry, const FAST: bool>(
     simd: S,
-    tree: &WideBvh,
-    rays: &[Ray],
+    piece: &Piece<'_, G>,
     hits: &mut [Option<Hit>],
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
-    first: usize,
 ) {
     let Scratch { packet, stack } = scratch;
-    if !tree.only_triangles {
-        rest.extend(first..first + rays.len());
-    } else if packet.gather::<S, false>(simd, rays, rest, first) {
+    if packet.gather::<S, false>(simd, piece.rays, rest, piece.first) {
         // While the packet is under way, the place for its hits arrives.
         simd.prefetch_slice(hits);
-        packet.trace::<S, false, FAST>(simd, tree, rays, stack);
-        packet.finish(simd, rays, hits, rest, first);
+        packet.trace::<S, G, false, FAST>(simd, piece, stack);
+        packet.finish(simd, piece.rays, hits, rest, piece.first);
     }
 }
 
 /// Finds out whether anything blocks rays that share their origin or their end. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn any<S: Simd, const FAST: bool>(
+pub(super) fn any<S: Simd, G: Geometry, const FAST: bool>(
     simd: S,
-    tree: &WideBvh,
-    rays: &[Ray],
+    piece: &Piece<'_, G>,
     occluded: &mut [bool],
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
-    first: usize,
 ) {
     let Scratch { packet, stack } = scratch;
-    if !tree.only_triangles {
-        rest.extend(first..first + rays.len());
-    } else if packet.gather::<S, true>(simd, rays, rest, first) {
-        packet.trace::<S, true, FAST>(simd, tree, rays, stack);
+    if packet.gather::<S, true>(simd, piece.rays, rest, piece.first) {
+        packet.trace::<S, G, true, FAST>(simd, piece, stack);
         for group in 0..GROUP {
             for lane in 0..GROUP {
                 let number = usize::from(packet.numbers[group][lane]);
@@ -138,7 +142,7 @@ pub(super) fn any<S: Simd, const FAST: bool>(
                     occluded[number] = is_member && is_blocked;
                 }
                 if packet.alone[group] >> lane & 1 == 1 && !is_blocked {
-                    rest.push(first + number);
+                    rest.push(piece.first + number);
                 }
             }
         }
@@ -168,19 +172,18 @@ impl Packet {
 
     /// Sends the packet through the tree.
     #[inline(always)]
-    fn trace<S: Simd, const ANY: bool, const FAST: bool>(
+    fn trace<S: Simd, G: Geometry, const ANY: bool, const FAST: bool>(
         &mut self,
         simd: S,
-        tree: &WideBvh,
-        rays: &[Ray],
+        piece: &Piece<'_, G>,
         stack: &mut [Item],
     ) {
-        if tree.root == Reference::NOTHING {
+        if piece.tree.root == Reference::NOTHING {
             return;
         }
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
-        stack[0] = Item { reference: tree.root, groups: self.groups.live, near: 0.0 };
+        stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near: 0.0 };
         let mut top = 1;
         while top > 0 {
             top -= 1;
@@ -190,9 +193,9 @@ impl Packet {
                 continue;
             }
             if reference.is_leaf() {
-                self.visit_leaf::<S, ANY, FAST>(simd, tree, rays, reference, groups);
+                self.visit_leaf::<S, G, ANY, FAST>(simd, piece, reference, groups);
             } else {
-                top += self.enter_node(simd, tree, reference, groups, &mut stack[top..]);
+                top += self.enter_node(simd, piece.tree, reference, groups, &mut stack[top..]);
             }
         }
     }
@@ -246,20 +249,26 @@ impl Packet {
         count
     }
 
-    /// Tests the triangles of a leaf against the rays of some groups.
+    /// Tests the primitives of a leaf against the rays of some groups.
     #[inline(always)]
-    fn visit_leaf<S: Simd, const ANY: bool, const FAST: bool>(
+    fn visit_leaf<S: Simd, G: Geometry, const ANY: bool, const FAST: bool>(
         &mut self,
         simd: S,
-        tree: &WideBvh,
-        rays: &[Ray],
+        piece: &Piece<'_, G>,
         leaf: Reference,
         groups: u32,
     ) {
-        let block = tree.block(leaf);
+        let block = piece.tree.block(leaf);
+        let others = others(piece.geometry, &block.primitives, leaf);
         let tolerance = if ANY { LARGE_TOLERANCE } else { TOLERANCE };
-        let triangles =
-            Triangles::new(simd, block, leaf.lanes(), &self.frame, &self.groups, tolerance);
+        let triangles = Triangles::new(
+            simd,
+            block,
+            leaf.lanes() & !others,
+            &self.frame,
+            &self.groups,
+            tolerance,
+        );
         let mut touched = 0;
         let mut work = simd.load16(&self.work);
         let mut left = triangles.possible & !triangles.unknown;
@@ -277,17 +286,17 @@ impl Packet {
                 let doubtful =
                     self.test::<S, ANY, FAST>(simd, &triangles, lane, group % GROUP, primitive);
                 if doubtful != 0 {
-                    self.settle::<ANY>(rays, tree, leaf, lane, group, doubtful);
+                    self.settle::<G, ANY>(piece, leaf, lane, group, doubtful);
                 }
             }
         }
-        let mut left = if FAST { 0 } else { triangles.possible & triangles.unknown };
+        let mut left = if FAST { others } else { others | triangles.possible & triangles.unknown };
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             touched |= groups;
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
-                self.settle::<ANY>(rays, tree, leaf, lane, group, self.members[group]);
+                self.settle::<G, ANY>(piece, leaf, lane, group, self.members[group]);
             }
         }
 
@@ -411,24 +420,30 @@ impl Packet {
     /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
     #[cold]
     #[inline(never)]
-    fn settle<const ANY: bool>(
+    fn settle<G: Geometry, const ANY: bool>(
         &mut self,
-        rays: &[Ray],
-        tree: &WideBvh,
+        piece: &Piece<'_, G>,
         leaf: Reference,
         lane: usize,
         group: usize,
         doubtful: u32,
     ) {
-        let block = tree.block(leaf);
+        let block = piece.tree.block(leaf);
+        let is_triangle =
+            !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
         for place in (0..GROUP).filter(|place| doubtful >> place & 1 == 1) {
             if self.nearest[group][place] == f32::INFINITY {
                 continue;
             }
-            let Some(ray) = PreparedRay::new(&rays[usize::from(self.numbers[group][place])]) else {
+            let Some(ray) = PreparedRay::new(&piece.rays[usize::from(self.numbers[group][place])])
+            else {
                 continue;
             };
-            let Some(hit) = block.intersect_one(&ray, lane) else { continue };
+            let hit = match is_triangle {
+                true => block.intersect_one(&ray, lane),
+                false => hit_one(piece.geometry, &ray, block.primitives[lane]),
+            };
+            let Some(hit) = hit else { continue };
             let nearest = &mut self.nearest[group][place];
             if ANY {
                 *nearest = f32::INFINITY;

@@ -50,7 +50,7 @@ impl Packet {
         let [x, y] = self.groups.whole;
         let mut cells = [[0u16; GROUP]; GROUP];
         let mut starts = [0u16; CELLS * CELLS + 1];
-        for group in 0..GROUP {
+        for (group, cells) in cells.iter_mut().enumerate() {
             let across = cell_coordinates(simd, &self.slopes[0][group], x);
             let along = cell_coordinates(simd, &self.slopes[1][group], y);
             for lane in 0..GROUP {
@@ -60,7 +60,7 @@ impl Packet {
                 );
                 let is_member = self.members[group] >> lane & 1 == 1;
                 let cell = if is_member { u16::from(x | y << 1) } else { 256 };
-                cells[group][lane] = cell;
+                cells[lane] = cell;
                 starts[cell as usize] += 1;
             }
         }
@@ -78,8 +78,8 @@ impl Packet {
             count += u32::from(cell < 256);
             let (from, place) = (number % RAYS, usize::from(place) % RAYS);
             self.numbers.as_flattened_mut()[place] = from as u8;
-            for axis in 0..2 {
-                self.slopes[axis].as_flattened_mut()[place] = slopes[axis].as_flattened()[from];
+            for (to, slopes) in self.slopes.iter_mut().zip(&slopes) {
+                to.as_flattened_mut()[place] = slopes.as_flattened()[from];
             }
             self.nearest.as_flattened_mut()[place] = nearest.as_flattened()[from];
             self.scales.as_flattened_mut()[place] = scales.as_flattened()[from];

@@ -137,9 +137,15 @@ impl Triangles {
             unknown: lanes & !known,
         };
         let zero = simd.splat8(0.0);
-        for number in 0..4 {
-            let (vectors, factor) =
-                if number < 3 { (edges[number], half) } else { (normal, reciprocal) };
+        let [edge_a, edge_b, edge_c] = edges;
+        let error = zero - errors;
+        let functions = [
+            (edge_a, half, error),
+            (edge_b, half, error),
+            (edge_c, half, error),
+            (normal, reciprocal, zero),
+        ];
+        for (number, (vectors, factor, least)) in functions.into_iter().enumerate() {
             let mut greatest = vectors[2] * factor;
             triangles.functions[number][2] = greatest.to_array();
             for axis in [1, 0] {
@@ -151,7 +157,6 @@ impl Triangles {
                 let slope = simd.splat8(most).replaced(negative, simd.splat8(least));
                 greatest = factors.mul_add(slope, greatest);
             }
-            let least = if number < 3 { zero - errors } else { zero };
             triangles.possible &= !greatest.less(least) | triangles.unknown;
         }
         triangles
