@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::{Float, Kernel, Simd};
+use super::{Float, Kernel, Portable, Simd};
 
 /// The token of AVX2: whoever has it runs on a processor with it and FMA.
 #[derive(Clone, Copy)]
@@ -257,4 +257,227 @@ impl Simd for Avx2 {
     fn prefetch(self, start: *const u8) {
         prefetch(start);
     }
+
+    #[inline(always)]
+    fn partition(
+        self,
+        numbers: &[u32; 64],
+        end: u32,
+        last: u32,
+        lists: &mut [[u32; 80]; 3],
+    ) -> [usize; 3] {
+        let mut counts = [0; 3];
+        let lists = lists.each_mut().map(|list| list.as_mut_ptr());
+        for start in (0..64).step_by(8) {
+            // SAFETY: the token; eight numbers from `start` on can be read. A list has at most `start` places when eight more are written to it, and
+            // room for 80.
+            unsafe {
+                let numbers = _mm256_loadu_si256(numbers.as_ptr().add(start).cast());
+                // There is no comparison of numbers without sign: move both to those with one.
+                let signed = |v| _mm256_xor_si256(v, _mm256_set1_epi32(i32::MIN));
+                let all = |number: u32| _mm256_set1_epi32(number as i32);
+                let odd = lanes_of(_mm256_slli_epi32::<31>(numbers));
+                let below = lanes_of(_mm256_cmpgt_epi32(signed(all(end)), signed(numbers)));
+                let is_last = lanes_of(_mm256_cmpeq_epi32(numbers, all(last)));
+                for (list, set) in [!odd & 0xff, odd & below, is_last].into_iter().enumerate() {
+                    let places = _mm256_add_epi32(chosen_lanes(set), all(start as u32));
+                    _mm256_storeu_si256(lists[list].add(counts[list]).cast(), places);
+                    counts[list] += set.count_ones() as usize;
+                }
+            }
+        }
+        counts
+    }
+
+    #[inline(always)]
+    fn retain(self, keys: &mut [f32], items: &mut [u32], count: usize, limit: f32) -> usize {
+        assert!(count.next_multiple_of(8) <= keys.len().min(items.len()), "a multiple of sixteen");
+        let (keys, items) = (keys.as_mut_ptr(), items.as_mut_ptr());
+        let mut kept = 0;
+        for start in (0..count).step_by(8) {
+            let here = (count - start).min(8);
+            // SAFETY: the token; eight places from `start` on exist. What is written begins at `kept`, which is no more than `start`, so it ends no later
+            // than what has just been read.
+            unsafe {
+                let k = _mm256_loadu_ps(keys.add(start));
+                let i = _mm256_loadu_si256(items.add(start).cast());
+                let keep = F8(k).less_or_equal(self.splat8(limit)) & (0xff >> (8 - here));
+                let lanes = chosen_lanes(keep);
+                _mm256_storeu_ps(keys.add(kept), _mm256_permutevar8x32_ps(k, lanes));
+                _mm256_storeu_si256(items.add(kept).cast(), _mm256_permutevar8x32_epi32(i, lanes));
+                kept += keep.count_ones() as usize;
+            }
+        }
+        kept
+    }
+
+    #[inline(always)]
+    fn least8(self, chosen: u32, numbers: F8) -> (f32, u32) {
+        let least = self.splat8(f32::INFINITY).replaced(chosen, numbers).least();
+        (least, chosen & numbers.less_or_equal(self.splat8(least)))
+    }
+
+    #[inline(always)]
+    fn push_chosen(
+        self,
+        chosen: u32,
+        items: &[u32; 16],
+        stack: &mut [u32],
+        top: usize,
+    ) -> (usize, u32) {
+        let stack = &mut stack[top - 1..top + 16];
+        let first = (chosen & 0xff).count_ones() as usize;
+        // SAFETY: the token; two halves of the items can be read. There is room for sixteen from place 1 on, and `first` is at most eight.
+        unsafe {
+            let [low, high] = halves(items);
+            let low = _mm256_permutevar8x32_epi32(low, chosen_lanes(chosen));
+            let high = _mm256_permutevar8x32_epi32(high, chosen_lanes(chosen >> 8));
+            _mm256_storeu_si256(stack.as_mut_ptr().add(1).cast(), low);
+            _mm256_storeu_si256(stack.as_mut_ptr().add(1 + first).cast(), high);
+        }
+        let count = chosen.count_ones() as usize;
+        (count, stack[count])
+    }
+
+    #[inline(always)]
+    fn push_sorted(
+        self,
+        chosen: u32,
+        keys: F16,
+        items: &[u32; 16],
+        (stack_keys, stack_items): (&mut [f32], &mut [u32]),
+        top: usize,
+    ) -> (usize, u32) {
+        let count = chosen.count_ones() as usize;
+        if count > 8 {
+            // Seldom.
+            let keys = keys.to_array();
+            return push_many(chosen, &keys, items, (stack_keys, stack_items), top);
+        }
+        let stack_keys = &mut stack_keys[top..top + 16];
+        let stack_items = &mut stack_items[top - 1..top + 16];
+        // SAFETY: the token; two halves of the items can be read. There is room for eight keys, and for eight items from place 1 on.
+        unsafe {
+            // The keys' upper 28 bits and the lane are one whole number. Bring the chosen of each half together.
+            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let tagged = |half: usize, lanes| {
+                let bits = _mm256_castps_si256(keys.0[half].0);
+                _mm256_or_si256(_mm256_andnot_si256(_mm256_set1_epi32(15), bits), lanes)
+            };
+            let low = tagged(0, lanes);
+            let high = tagged(1, _mm256_add_epi32(lanes, _mm256_set1_epi32(8)));
+            let low = _mm256_permutevar8x32_epi32(low, chosen_lanes(chosen));
+            let high = _mm256_permutevar8x32_epi32(high, chosen_lanes(chosen >> 8));
+
+            // The second half's behind those of the first, and behind them what is below all others.
+            let first = _mm256_set1_epi32((chosen & 0xff).count_ones() as i32);
+            let high = _mm256_permutevar8x32_epi32(high, _mm256_sub_epi32(lanes, first));
+            let both = _mm256_blendv_epi8(high, low, _mm256_cmpgt_epi32(first, lanes));
+            let none = _mm256_set1_epi32(i32::MIN);
+            let filled = _mm256_cmpgt_epi32(_mm256_set1_epi32(count as i32), lanes);
+            let sorted = sort_four(_mm256_blendv_epi8(none, both, filled));
+
+            // A permutation takes the lane from the lowest three bits; the fourth, moved to the sign, chooses the half.
+            let [low, high] = halves(items);
+            let low = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(low, sorted));
+            let high = _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(high, sorted));
+            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(sorted));
+            let items = _mm256_blendv_ps(low, high, half);
+            _mm256_storeu_si256(stack_keys.as_mut_ptr().cast(), sorted);
+            _mm256_storeu_ps(stack_items.as_mut_ptr().add(1).cast(), items);
+        }
+        (count, stack_items[count])
+    }
+}
+
+/// What [`push_sorted`](Simd::push_sorted) does with more than eight pairs, out of its way.
+#[cold]
+#[inline(never)]
+fn push_many(
+    chosen: u32,
+    keys: &[f32; 16],
+    items: &[u32; 16],
+    stack: (&mut [f32], &mut [u32]),
+    top: usize,
+) -> (usize, u32) {
+    Portable.push_sorted(chosen, Portable.load16(keys), items, stack, top)
+}
+
+/// For each set of eight lanes, these in ascending order, a byte each.
+static CHOSEN_LANES: [u64; 256] = {
+    let mut table = [0; 256];
+    let mut set = 0;
+    while set < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 8 {
+            if set >> lane & 1 == 1 {
+                table[set] |= lane << (8 * count);
+                count += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    table
+};
+
+/// The lanes of a set in ascending order, and behind them lane 0; of the set only the lowest eight count.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn chosen_lanes(set: u32) -> __m256i {
+    let lanes = CHOSEN_LANES[set as usize & 0xff];
+    // SAFETY: the caller's.
+    unsafe { _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(lanes as i64)) }
+}
+
+/// The lanes whose highest bit is set.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn lanes_of(v: __m256i) -> u32 {
+    // SAFETY: the caller's.
+    unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(v)) as u32 }
+}
+
+/// Sixteen items in two registers.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn halves(items: &[u32; 16]) -> [__m256i; 2] {
+    let start = items.as_ptr();
+    // SAFETY: the caller's; there are sixteen.
+    unsafe { [_mm256_loadu_si256(start.cast()), _mm256_loadu_si256(start.add(8).cast())] }
+}
+
+/// A step of a sorting network: lanes and their partners, the larger number to the lanes of `larger`.
+macro_rules! exchange {
+    ($v:ident, $partners:literal, $larger:literal) => {{
+        let partners = _mm256_shuffle_epi32::<$partners>($v);
+        let (small, large) = (_mm256_min_epi32($v, partners), _mm256_max_epi32($v, partners));
+        $v = _mm256_blend_epi32::<$larger>(small, large);
+    }};
+}
+
+/// Sorts each four lanes in descending order.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn sort_four(v: __m256i) -> __m256i {
+    let mut v = v;
+    // SAFETY: the caller's.
+    unsafe {
+        exchange!(v, 0b10_11_00_01, 0b1001_1001);
+        exchange!(v, 0b01_00_11_10, 0b0011_0011);
+        exchange!(v, 0b10_11_00_01, 0b0101_0101);
+    }
+    v
 }
