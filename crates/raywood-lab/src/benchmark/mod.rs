@@ -66,7 +66,7 @@ pub struct Benchmark {
 ///
 /// Times are medians of rounds in which all levels, numbers of threads and kinds of rays take turns; pictures, which take longer, do so
 /// among themselves. Before, all their answers are held against each other and against the default structure's, those of the default structure
-/// for a sample against brute force's: they are equal, to the bit, or the benchmark is an error. Of the levels of instructions only those are measured that are not above the one that the
+/// for a sample against brute force's: they agree, or the benchmark is an error. Of the levels of instructions only those are measured that are not above the one that the
 /// structure uses, which it uses again in the end. Works in rayon pools of its own. `step` is told what is being done.
 ///
 /// # Errors

@@ -19,7 +19,7 @@ const BUILD_SECONDS: f64 = 4.0;
 /// Builds the structures over the scene and has each trace the same rays, on the threads of the current rayon pool.
 ///
 /// Times are medians of rounds in which all structures take turns. Every hit of every structure is held against those of the structure in
-/// `reference`, whose own are held against brute force if that is among the structures: all are equal, to the bit, or the comparison is an
+/// `reference`, whose own are held against brute force if that is among the structures: all agree, or the comparison is an
 /// error. Brute force, and any other structure that would take too long, traces a sample of the rays. All structures are in
 /// memory at once, and are handed over in the end. `step` is told what is being done.
 ///

@@ -41,7 +41,7 @@ pub struct BuildOptions {
 /// How rays are tested against triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TriangleTest {
-    /// No ray slips between triangles that share an edge, and hits are the same for every structure, to the bit.
+    /// No ray slips between triangles that share an edge, and hits of single rays are the same for every structure, to the bit.
     #[default]
     Watertight,
     /// Rays may slip between triangles that share an edge, and hits may differ from those of other structures in the last digits. Kept to compare speeds:

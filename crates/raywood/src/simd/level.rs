@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 /// The level that kernels use unless they are told otherwise, once it is decided.
 static ACTIVE: OnceLock<SimdLevel> = OnceLock::new();
 
-/// A set of vector instructions that kernels are compiled for. All levels give the same answers, to the bit.
+/// A set of vector instructions that kernels are compiled for. All levels give the same answers to single rays, to the bit, and
+/// [agreeing](crate::Hit::agrees_with) ones to batches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum SimdLevel {

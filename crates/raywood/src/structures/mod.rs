@@ -27,8 +27,8 @@ pub(crate) const MAX_DEPTH: usize = 64;
 /// What every acceleration structure can do.
 ///
 /// A structure holds boxes, cells and primitive numbers, not the geometry, which every query is given: it must be the one that the
-/// structure was built over. All structures give the same answers, to the bit: the hit of least distance, of equal ones that of the
-/// lowest primitive number.
+/// structure was built over. All structures give the same answers to single rays, to the bit: the hit of least distance, of equal ones
+/// that of the lowest primitive number. Answers to batches [agree](Hit::agrees_with) with these.
 pub trait AccelerationStructure: Send + Sync {
     /// The closest hit at `t_min <= t < t_max`. The probe is told what is tested.
     fn intersect<G: Geometry, P: Probe>(
