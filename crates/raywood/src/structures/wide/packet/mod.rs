@@ -65,7 +65,7 @@ const TOLERANCE: f32 = 1.0 / 4096.0;
 const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 
 /// A group is given up when it was tested against more triangles than this: about as long does it take to trace its rays one by one.
-const MOST_WORK: f32 = 96.0;
+const MOST_WORK: f32 = 128.0;
 
 /// Stands for a primitive where none was hit.
 const NONE: u32 = u32::MAX;

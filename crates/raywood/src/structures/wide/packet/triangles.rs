@@ -17,8 +17,8 @@ const EDGE_ROUNDINGS: f32 = 40.0;
 /// The relative error of a depth is at most so many roundings of the same product over the triangle's distance from the origin's.
 const DEPTH_ROUNDINGS: f32 = 16.0;
 
-/// A corner's weight may be off by so much; in slivers that cannot be promised, and the triangle test of single rays decides.
-const WEIGHT_TOLERANCE: f32 = 1.0 / 512.0;
+/// A corner's weight may be off by so much in the worst case; in slivers that cannot be promised, and the triangle test of single rays decides.
+const WEIGHT_TOLERANCE: f32 = 1.0 / 64.0;
 
 /// What is outside of this range may have lost digits to underflow or come too near to overflow.
 const LEAST_VOLUME: f32 = 1e-30;
