@@ -67,7 +67,7 @@ pub(crate) fn fill_pieces<I: Sync, O: Send>(
     {
         // Pieces large enough that filling pipelines at their beginning costs little, small enough that all threads have some.
         let threads = rayon::current_num_threads();
-        let piece = inputs.len().div_ceil(4 * threads).min(4096).next_multiple_of(PACKET);
+        let piece = inputs.len().div_ceil(4 * threads).clamp(1, 4096).next_multiple_of(PACKET);
         inputs.par_chunks(piece).zip(outputs.par_chunks_mut(piece)).for_each(|(i, o)| f(i, o));
     }
     #[cfg(not(feature = "rayon"))]

@@ -213,12 +213,14 @@ fn the_fast_test_differs_near_edges_alone() {
 fn answers_do_not_depend_on_threads() {
     let mesh = shapes::soup(2000, 0.2, 8);
     let structure = build(&mesh);
-    let rays = pinhole(Vec3::new(0.1, 0.2, -3.0), Vec3::ZERO, 0.8, 3000);
-    let mut expected = vec![None; rays.len()];
-    structure.intersect_batch_serial(&rays, &mut expected);
-    let mut hits = vec![None; rays.len()];
-    structure.intersect_batch(&rays, &mut hits);
-    assert!(hits == expected);
+    for count in [0, 1, 100, 3000] {
+        let rays = pinhole(Vec3::new(0.1, 0.2, -3.0), Vec3::ZERO, 0.8, count);
+        let mut expected = vec![None; rays.len()];
+        structure.intersect_batch_serial(&rays, &mut expected);
+        let mut hits = vec![None; rays.len()];
+        structure.intersect_batch(&rays, &mut hits);
+        assert!(hits == expected);
+    }
 }
 
 trait BoundsOfAll {
