@@ -75,10 +75,16 @@ fn the_picture_does_not_depend_on_the_structure() {
             format!("render builtin:sphereflake?depth=2 --size 96x60 --structure {name}");
         let report = json(&run(&folder, &format!("{arguments} --json")));
         assert_eq!(report["structure"]["name"], *name);
-        Picture::read(&folder.join("render.png")).expect("a PNG")
+        (*name, Picture::read(&folder.join("render.png")).expect("a PNG"))
     });
-    let first = pictures.next().expect("a picture");
-    assert!(pictures.all(|picture| picture == first));
+    let (_, first) = pictures.next().expect("a picture");
+    for (name, picture) in pictures {
+        // The wide tree traces coherent rays in packets, which round differently; mirrors enlarge that.
+        let difference = picture.difference(&first);
+        let is_close = difference.mean <= 0.1 && difference.outliers <= 0.002;
+        let is_same = if name == "bvh-wide" { is_close } else { picture == first };
+        assert!(is_same, "{name}: {difference:?}");
+    }
 }
 
 #[test]
