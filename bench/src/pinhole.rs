@@ -13,7 +13,7 @@ type Double = [f64; 3];
 /// `normalize(F + (2 (x + 1/2) / W - 1) k (W / H) R + (1 - 2 (y + 1/2) / H) k U)`, computed in double precision and rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pinhole {
-    eye: Vec3,
+    pub(crate) eye: Vec3,
     forward: Double,
     right: Double,
     up: Double,

@@ -58,6 +58,8 @@ impl SetKind {
 pub(crate) struct RaySet {
     pub(crate) kind: SetKind,
     pub(crate) rays: Vec<Ray>,
+    /// The point that all rays start from, or go to if any hit ends them.
+    pub(crate) common: Option<Vec3>,
 }
 
 /// How far off the surface secondary rays start, as a share of the scene's diagonal: the same for all, whatever each offers to avoid hitting
@@ -112,7 +114,12 @@ pub(crate) fn ray_sets(
             }
             SetKind::Shuffled => shuffled(diffuse(&starts)),
         };
-        RaySet { kind, rays }
+        let common = match kind {
+            SetKind::Primary => Some(viewpoint.camera.eye),
+            SetKind::Shadow => Some(viewpoint.light),
+            _ => None,
+        };
+        RaySet { kind, rays, common }
     };
     kinds.iter().map(make).collect()
 }

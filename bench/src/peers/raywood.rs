@@ -1,9 +1,14 @@
 //! Raywood itself: every mode of its own that a user can choose.
 
-use raywood::{BuildOptions, Bvh, Ray, Structure, StructureKind, TriangleMesh, TriangleTest};
+use std::hint::black_box;
+
+use raywood::{
+    BuildOptions, Bvh, HitColumns, Ray, Structure, StructureKind, TriangleMesh, TriangleTest, Vec3,
+};
 
 use super::each_ray::{Batch, EachRay};
-use super::{Built, Mode, Peer, PeerEntry};
+use super::{Built, Mode, Peer, PeerEntry, Tracer};
+use crate::answers::Answers;
 use crate::embree::Library;
 use crate::ray_sets::RaySet;
 
@@ -63,6 +68,8 @@ impl Peer for Raywood<'_> {
                     EachRay::new(set, Ray::clone, |ray| fast.intersect(ray)).boxed()
                 }
             }),
+            Mode::new("wide point", true, |set: &RaySet| point_tracer(wide, set)),
+            Mode::new("fast point", false, |set: &RaySet| point_tracer(fast, set)),
             Mode::new("batch", true, |set: &RaySet| {
                 if set.kind.any_hit() {
                     Batch::boxed(set, |rays, occluded| bvh.occluded_batch(rays, occluded))
@@ -78,5 +85,67 @@ impl Peer for Raywood<'_> {
                 }
             }),
         ]
+    }
+}
+
+/// The rays of a set that have a point in common, given by that point and what else each has.
+fn point_tracer<'a>(
+    structure: &'a Structure<&'a TriangleMesh>,
+    set: &'a RaySet,
+) -> Option<Box<dyn Tracer + 'a>> {
+    let point = set.common?;
+    Some(if set.kind.any_hit() {
+        let points: Vec<_> = set.rays.iter().map(|ray| ray.origin).collect();
+        Box::new(Towards { structure, point, occluded: vec![false; points.len()], points })
+    } else {
+        let directions: Vec<_> = set.rays.iter().map(|ray| ray.direction).collect();
+        let hits = HitColumns::new(directions.len());
+        Box::new(FromPoint { structure, point, directions, hits })
+    })
+}
+
+/// Rays from a point.
+struct FromPoint<'a> {
+    structure: &'a Structure<&'a TriangleMesh>,
+    point: Vec3,
+    directions: Vec<Vec3>,
+    hits: HitColumns,
+}
+
+impl Tracer for FromPoint<'_> {
+    fn reset(&mut self) {
+        black_box(self.directions.clone());
+        self.hits = HitColumns::new(self.directions.len());
+    }
+
+    fn trace(&mut self) {
+        self.structure.intersect_from(self.point, &self.directions, &mut self.hits);
+    }
+
+    fn answers(&self) -> Answers {
+        Answers::closest(self.hits.iter().map(|hit| hit.map(|hit| hit.t)))
+    }
+}
+
+/// Rays to a point.
+struct Towards<'a> {
+    structure: &'a Structure<&'a TriangleMesh>,
+    point: Vec3,
+    points: Vec<Vec3>,
+    occluded: Vec<bool>,
+}
+
+impl Tracer for Towards<'_> {
+    fn reset(&mut self) {
+        black_box(self.points.clone());
+        self.occluded.fill(false);
+    }
+
+    fn trace(&mut self) {
+        self.structure.occluded_towards(self.point, 1.0, &self.points, &mut self.occluded);
+    }
+
+    fn answers(&self) -> Answers {
+        Answers::Any(self.occluded.clone())
     }
 }

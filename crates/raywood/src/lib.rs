@@ -41,6 +41,7 @@ mod bvh;
 mod error;
 mod geometry;
 mod hit;
+mod hit_columns;
 mod minmax;
 mod parallel;
 mod ray;
@@ -60,6 +61,7 @@ pub use geometry::{
     TriangleMesh,
 };
 pub use hit::Hit;
+pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use ray::Ray;
 pub use simd::{SimdLevel, SimdLevelError};
 pub use stats::{Level, NodeView, StructureStats};

@@ -4,6 +4,8 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+use crate::{HitColumnsMut, Vec3};
+
 /// How many items a task handles at least: enough that handing it out costs nothing in comparison.
 const GRAIN: usize = 4096;
 
@@ -73,6 +75,27 @@ pub(crate) fn fill_pieces<I: Sync, O: Send>(
     #[cfg(not(feature = "rayon"))]
     f(inputs, outputs);
 }
+
+/// Has `f` write the hits of a piece of the directions, piece by piece. There are as many of both.
+pub(crate) fn fill_columns(
+    directions: &[Vec3],
+    hits: HitColumnsMut<'_>,
+    f: &(impl Fn(&[Vec3], HitColumnsMut<'_>) + Sync),
+) {
+    #[cfg(feature = "rayon")]
+    if directions.len() > PIECE_OF_COLUMNS {
+        let half = (directions.len() / 2).next_multiple_of(PACKET);
+        let (first, second) = directions.split_at(half);
+        let (first_hits, second_hits) = hits.split_at(half);
+        rayon::join(|| fill_columns(first, first_hits, f), || fill_columns(second, second_hits, f));
+        return;
+    }
+    f(directions, hits);
+}
+
+/// As many rays as a task takes at most: more of them would not be shared out evenly, fewer would often prepare for packets.
+#[cfg(feature = "rayon")]
+const PIECE_OF_COLUMNS: usize = 16 * PACKET;
 
 /// Writes `f` of each input to the output beside it. Both slices have the same length.
 pub(crate) fn fill<I: Sync, O: Send>(inputs: &[I], outputs: &mut [O], f: impl Fn(&I) -> O + Sync) {

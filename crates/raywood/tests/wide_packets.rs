@@ -1,8 +1,8 @@
 //! Rays that share their origin or go to one point: packets of every size and shape answer as single rays do.
 
 use raywood::{
-    BuildOptions, Geometry, Hit, Ray, SimdLevel, Spheres, Structure, StructureKind, TriangleMesh,
-    TriangleTest, Vec3,
+    BuildOptions, Geometry, Hit, HitColumns, Ray, SimdLevel, Spheres, Structure, StructureKind,
+    TriangleMesh, TriangleTest, Vec3,
 };
 use raywood_testkit::{Rng, nasty, oracle, shapes};
 
@@ -22,20 +22,59 @@ fn check<G: Geometry>(structure: &mut Structure<G>, rays: &[Ray], what: &str) {
         structure.occluded_batch_serial(rays, &mut blocked);
         for ((ray, hit), blocked) in rays.iter().zip(hits).zip(blocked) {
             let expected = structure.intersect(ray);
-            let agree = match (&hit, &expected) {
-                (Some(hit), Some(expected)) => {
-                    let near = |a: f32, b: f32| (a - b).abs() <= 1.0 / 256.0;
-                    let same = hit.primitive == expected.primitive;
-                    let weights = near(hit.u, expected.u) && near(hit.v, expected.v);
-                    hit.agrees_with(expected)
-                        && ray.t_min <= hit.t
-                        && hit.t < ray.t_max
-                        && (weights || !same)
-                }
-                (hit, expected) => hit == expected,
-            };
-            assert!(agree, "{what}: {hit:?}, alone {expected:?}: {ray:?}");
+            assert_agree(&hit, &expected, ray, &what);
             assert_eq!(blocked, expected.is_some(), "{what}: {ray:?}");
+        }
+    }
+}
+
+/// Holds the hit of a ray in a packet against that of the ray alone.
+fn assert_agree(hit: &Option<Hit>, expected: &Option<Hit>, ray: &Ray, what: &str) {
+    let agree = match (hit, expected) {
+        (Some(hit), Some(expected)) => {
+            let near = |a: f32, b: f32| (a - b).abs() <= 1.0 / 256.0;
+            let same = hit.primitive == expected.primitive;
+            let weights = near(hit.u, expected.u) && near(hit.v, expected.v);
+            hit.agrees_with(expected)
+                && ray.t_min <= hit.t
+                && hit.t < ray.t_max
+                && (weights || !same)
+        }
+        (hit, expected) => hit == expected,
+    };
+    assert!(agree, "{what}: {hit:?}, alone {expected:?}: {ray:?}");
+}
+
+/// Holds rays given by their common point against single rays, from there and to there.
+fn check_point<G: Geometry>(
+    structure: &mut Structure<G>,
+    point: Vec3,
+    vectors: &[Vec3],
+    what: &str,
+) {
+    // As many as of another call, which must leave no trace.
+    let mut hits = HitColumns::new(7);
+    hits.primitive.fill(3);
+    for level in SimdLevel::available() {
+        structure.set_simd_level(level);
+        let what = format!("{what}, {} rays from a point, {}", vectors.len(), level.name());
+        structure.intersect_from(point, vectors, &mut hits);
+        assert_eq!(hits.len(), vectors.len(), "{what}");
+        for (number, &direction) in vectors.iter().enumerate() {
+            let ray = Ray::new(point, direction);
+            assert_agree(&hits.get(number), &structure.intersect(&ray), &ray, &what);
+            if hits.primitive[number] == HitColumns::NONE {
+                let rest = (hits.t[number], hits.u[number], hits.v[number]);
+                assert_eq!(rest, (f32::INFINITY, 0.0, 0.0), "{what}: {ray:?}");
+            }
+        }
+        for end in [1.0, 1.0 - 1.0 / 4096.0, 0.5, 0.0] {
+            let mut blocked = vec![true; vectors.len()];
+            structure.occluded_towards(point, end, vectors, &mut blocked);
+            for (&from, blocked) in vectors.iter().zip(blocked) {
+                let ray = Ray::between(from, point).with_interval(0.0, end);
+                assert_eq!(blocked, structure.occluded(&ray), "{what}, to {end}: {ray:?}");
+            }
         }
     }
 }
@@ -70,6 +109,43 @@ fn packets_of_every_size_agree_with_single_rays() {
         let rays = pinhole(Vec3::new(1.9, 0.7, -2.1), Vec3::ZERO, 0.9, size);
         check(&mut structure, &rays, "pinhole");
         check(&mut structure, &returning(&rays, &mut rng), "returning");
+        let point = rays[0].origin;
+        let directions: Vec<_> = rays.iter().map(|ray| ray.direction).collect();
+        check_point(&mut structure, point, &directions, "directions");
+        let points: Vec<_> = rays.iter().map(|ray| ray.at(rng.range(0.2, 3.0))).collect();
+        check_point(&mut structure, point, &points, "points");
+    }
+}
+
+#[test]
+fn a_common_point_may_be_anything_and_so_may_the_rest() {
+    let mesh = shapes::soup(2000, 0.3, 5);
+    let mut structure = build(&mesh);
+    let mut rng = Rng::new(6);
+    let plain: Vec<_> = (0..600).map(|_| Vec3::new(0.0, 0.0, 1.5) + 0.4 * rng.in_cube()).collect();
+    let mut strange = plain.clone();
+    for (number, vector) in strange.iter_mut().enumerate() {
+        match number % 40 {
+            3 => *vector = Vec3::ZERO,
+            7 => vector.x = f32::NAN,
+            12 => vector.y = f32::NEG_INFINITY,
+            18 => *vector = 1e30 * *vector,
+            23 => *vector = 1e-35 * *vector,
+            31 => *vector = -*vector,
+            _ => {}
+        }
+    }
+    let points = [
+        Vec3::new(0.1, 0.2, -3.0),
+        Vec3::ZERO,
+        plain[0],
+        Vec3::new(f32::NAN, 0.0, 0.0),
+        Vec3::splat(f32::INFINITY),
+        Vec3::new(0.0, 1e7, 0.0),
+    ];
+    for point in points {
+        check_point(&mut structure, point, &plain, "plain");
+        check_point(&mut structure, point, &strange, "strange");
     }
 }
 
@@ -87,6 +163,10 @@ fn packets_over_nasty_meshes_agree_with_single_rays_and_with_the_oracle() {
                 let rays = pinhole(origin, center + 0.3 * size * rng.in_cube(), width, 290);
                 check(&mut structure, &rays, nasty.name);
                 check(&mut structure, &returning(&rays, &mut rng), nasty.name);
+                let directions: Vec<_> = rays.iter().map(|ray| ray.direction).collect();
+                check_point(&mut structure, origin, &directions, nasty.name);
+                let points: Vec<_> = rays.iter().map(|ray| ray.at(size)).collect();
+                check_point(&mut structure, origin, &points, nasty.name);
                 let mut hits = vec![None; rays.len()];
                 structure.intersect_batch(&rays, &mut hits);
                 for (ray, hit) in rays.iter().zip(hits).step_by(17) {

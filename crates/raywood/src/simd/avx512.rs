@@ -5,6 +5,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use super::avx2::{greatest_of_eight, least_of_eight};
 use super::{Float, Kernel, Simd};
+use crate::Vec3;
 
 /// The token of AVX-512: whoever has it runs on a processor with F, VL, DQ and BW.
 #[derive(Clone, Copy)]
@@ -193,6 +194,44 @@ impl Simd for Avx512 {
     fn load8(self, numbers: &[f32; 8]) -> F8 {
         // SAFETY: the token; eight numbers can be read.
         F8(unsafe { _mm256_loadu_ps(numbers.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn vector_columns(self, vectors: &[Vec3; 16]) -> [F16; 3] {
+        /// Which lanes a coordinate's numbers come from: of the first two registers, which count as one, and of the third.
+        const fn lanes(coordinate: usize) -> ([i32; 16], [i32; 16], u16) {
+            let (mut first, mut last, mut from_last) = ([0; 16], [0; 16], 0);
+            let mut lane = 0;
+            while lane < 16 {
+                let place = 3 * lane + coordinate;
+                if place < 32 {
+                    first[lane] = place as i32;
+                } else {
+                    last[lane] = place as i32 - 32;
+                    from_last |= 1 << lane;
+                }
+                lane += 1;
+            }
+            (first, last, from_last)
+        }
+        const LANES: [([i32; 16], [i32; 16], u16); 3] = [lanes(0), lanes(1), lanes(2)];
+        // SAFETY: the token; three times sixteen numbers can be read.
+        unsafe {
+            let start = vectors.as_ptr().cast::<f32>();
+            let a = _mm512_loadu_ps(start);
+            let b = _mm512_loadu_ps(start.add(16));
+            let c = _mm512_loadu_ps(start.add(32));
+            macro_rules! coordinate {
+                ($number:literal) => {{
+                    let (first, last, from_last) = const { LANES[$number] };
+                    let first = _mm512_loadu_epi32(first.as_ptr());
+                    let last = _mm512_loadu_epi32(last.as_ptr());
+                    let both = _mm512_permutex2var_ps(a, first, b);
+                    F16(_mm512_mask_permutexvar_ps(both, from_last, last, c))
+                }};
+            }
+            [coordinate!(0), coordinate!(1), coordinate!(2)]
+        }
     }
 
     #[inline(always)]

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+use crate::Vec3;
+
 /// A vector of numbers. A set of its lanes is a number with a bit for each.
 ///
 /// Comparisons with NaN are false.
@@ -97,6 +99,16 @@ pub(crate) trait Simd: Copy {
             self.load16(g),
             self.load16(h),
         ]
+    }
+
+    /// The coordinates of sixteen vectors in space.
+    #[inline(always)]
+    fn vector_columns(self, vectors: &[Vec3; 16]) -> [Self::F16; 3] {
+        let mut columns = [[0.0; 16]; 3];
+        for (lane, vector) in vectors.iter().enumerate() {
+            (columns[0][lane], columns[1][lane], columns[2][lane]) = (vector.x, vector.y, vector.z);
+        }
+        [self.load16(&columns[0]), self.load16(&columns[1]), self.load16(&columns[2])]
     }
 
     /// Asks for seven cache lines from an address on to be fetched soon. Nothing is read, so any address will do.

@@ -19,7 +19,8 @@ pub use structure::Structure;
 pub use wide::WideBvh;
 pub(crate) use wide::WideNode;
 
-use crate::{Geometry, Hit, NodeView, Probe, Ray, SimdLevel, StructureStats, ValidationError};
+use crate::{Geometry, Hit, HitColumnsMut, NodeView, Probe, Ray};
+use crate::{SimdLevel, StructureStats, ValidationError, Vec3};
 
 /// The most levels a tree may have, the root's counted: what the traversals' stacks hold.
 pub(crate) const MAX_DEPTH: usize = 64;
@@ -52,6 +53,35 @@ pub trait AccelerationStructure: Send + Sync {
     fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = self.occluded(geometry, ray, &mut ());
+        }
+    }
+
+    /// The closest hits of rays from one point without an end, on this thread, as [`intersect_batch`](Self::intersect_batch) gives them. There are as
+    /// many places for hits as directions.
+    fn intersect_from<G: Geometry>(
+        &self,
+        geometry: &G,
+        origin: Vec3,
+        directions: &[Vec3],
+        mut hits: HitColumnsMut<'_>,
+    ) {
+        for (number, direction) in directions.iter().enumerate() {
+            let ray = Ray::new(origin, *direction);
+            hits.set(number, self.intersect(geometry, &ray, &mut ()));
+        }
+    }
+
+    /// Whether anything lies between points and one that they look at, up to a share of the way, on this thread. Both slices have the same length.
+    fn occluded_towards<G: Geometry>(
+        &self,
+        geometry: &G,
+        (target, end): (Vec3, f32),
+        points: &[Vec3],
+        occluded: &mut [bool],
+    ) {
+        for (point, occluded) in points.iter().zip(occluded) {
+            let ray = Ray::between(*point, target).with_interval(0.0, end);
+            *occluded = self.occluded(geometry, &ray, &mut ());
         }
     }
 

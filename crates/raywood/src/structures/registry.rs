@@ -5,7 +5,8 @@ use super::{
 };
 use crate::ValidationError;
 use crate::build::Builder;
-use crate::{BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, SimdLevel};
+use crate::{BuildError, BuildOptions, Geometry, Hit, HitColumnsMut, NodeView, Probe};
+use crate::{Ray, SimdLevel, Vec3};
 
 /// Defines the kinds, their names, and the type that holds a structure of any kind.
 macro_rules! structures {
@@ -83,6 +84,30 @@ macro_rules! structures {
             fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
                 match self {
                     $(Self::$kind(structure) => structure.occluded_batch(geometry, rays, occluded),)*
+                }
+            }
+
+            fn intersect_from<G: Geometry>(
+                &self,
+                geometry: &G,
+                origin: Vec3,
+                directions: &[Vec3],
+                hits: HitColumnsMut<'_>,
+            ) {
+                match self {
+                    $(Self::$kind(structure) => structure.intersect_from(geometry, origin, directions, hits),)*
+                }
+            }
+
+            fn occluded_towards<G: Geometry>(
+                &self,
+                geometry: &G,
+                target: (Vec3, f32),
+                points: &[Vec3],
+                occluded: &mut [bool],
+            ) {
+                match self {
+                    $(Self::$kind(structure) => structure.occluded_towards(geometry, target, points, occluded),)*
                 }
             }
 

@@ -2,8 +2,8 @@
 
 use super::registry::AnyStructure;
 use super::{AccelerationStructure, StructureKind};
-use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray, StructureStats};
-use crate::{NodeView, SimdLevel, SurfacePoint, ValidationError, parallel};
+use crate::{BuildError, BuildOptions, Geometry, Hit, HitColumns, Probe, Ray, StructureStats};
+use crate::{NodeView, SimdLevel, SurfacePoint, ValidationError, Vec3, parallel};
 
 /// A geometry with an acceleration structure over it whose kind is chosen at run time: for comparing. [`Bvh`](crate::Bvh) is the one for
 /// everyday use.
@@ -108,6 +108,67 @@ impl<G: Geometry> Structure<G> {
         parallel::fill_pieces(rays, occluded, |rays, occluded| {
             self.structure.occluded_batch(&self.geometry, rays, occluded);
         });
+    }
+
+    /// The closest hits of rays from one point, which have no end, over all cores of the caller's rayon pool: the same as of
+    /// [`intersect_batch`](Self::intersect_batch) for `Ray::new(origin, direction)`. `hits` gets as many places as there are directions.
+    ///
+    /// For a camera's rays the fastest way, best in tiles of 16 times 16 pixels: half as much to read and write, and nobody has to find out that the rays start
+    /// at one point. Directions need not be normalised.
+    ///
+    /// ```
+    /// use raywood::{BuildOptions, HitColumns, Structure, StructureKind, TriangleMesh, Vec3};
+    ///
+    /// let corners = vec![[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [0.0, 1.0, 5.0]];
+    /// let mesh = TriangleMesh::new(corners, vec![[0, 1, 2]])?;
+    /// let structure = Structure::build(StructureKind::BvhWide, mesh, &BuildOptions::default())?;
+    /// let mut hits = HitColumns::default();
+    /// structure.intersect_from(Vec3::ZERO, &[Vec3::new(0.05, 0.05, 1.0), Vec3::new(0.0, 0.0, -1.0)], &mut hits);
+    /// assert_eq!(hits.primitive, [0, HitColumns::NONE]);
+    /// assert!((hits.t[0] - 5.0).abs() < 0.001);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn intersect_from(&self, origin: Vec3, directions: &[Vec3], hits: &mut HitColumns) {
+        hits.resize(directions.len());
+        parallel::fill_columns(directions, hits.as_mut(), &|directions, hits| {
+            self.structure.intersect_from(&self.geometry, origin, directions, hits);
+        });
+    }
+
+    /// As [`intersect_from`](Self::intersect_from), on this thread alone.
+    pub fn intersect_from_serial(&self, origin: Vec3, directions: &[Vec3], hits: &mut HitColumns) {
+        hits.resize(directions.len());
+        self.structure.intersect_from(&self.geometry, origin, directions, hits.as_mut());
+    }
+
+    /// Whether anything lies between each point and `target`, which is how many points are in the shadow of a small light, over all cores of the caller's rayon
+    /// pool: the same as of [`occluded_batch`](Self::occluded_batch) for `Ray::between(point, target)`, which ends at the share `end` of its way (1, or
+    /// a little less so that a surface at the target does not count).
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_towards(&self, target: Vec3, end: f32, points: &[Vec3], occluded: &mut [bool]) {
+        assert_eq!(points.len(), occluded.len(), "as many answers as points");
+        parallel::fill_pieces(points, occluded, |points, occluded| {
+            self.structure.occluded_towards(&self.geometry, (target, end), points, occluded);
+        });
+    }
+
+    /// As [`occluded_towards`](Self::occluded_towards), on this thread alone.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_towards_serial(
+        &self,
+        target: Vec3,
+        end: f32,
+        points: &[Vec3],
+        occluded: &mut [bool],
+    ) {
+        assert_eq!(points.len(), occluded.len(), "as many answers as points");
+        self.structure.occluded_towards(&self.geometry, (target, end), points, occluded);
     }
 
     /// As [`intersect_batch`](Self::intersect_batch), on this thread alone: for whoever hands out work to threads already.

@@ -6,66 +6,67 @@
 
 use super::flight::Flight;
 use super::node::Reference;
+use super::sink::Sink;
+use super::source::Source;
 use super::step::{any_blocks, leaf_hits, take_closest};
 use super::{WideBvh, packet};
 use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
-use crate::{AccelerationStructure, Geometry, Hit, Ray};
+use crate::{AccelerationStructure, Geometry};
 
 /// How many rays are in flight.
 const RAYS: usize = 64;
 
 /// Finds the closest hits of many rays.
-pub(super) struct Closest<'a, G, const FAST: bool> {
+pub(super) struct Closest<'a, G, R, H, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
-    pub(super) rays: &'a [Ray],
-    pub(super) hits: &'a mut [Option<Hit>],
+    pub(super) rays: R,
+    pub(super) hits: H,
 }
 
-impl<G: Geometry, const FAST: bool> Kernel for Closest<'_, G, FAST> {
+impl<G: Geometry, R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, G, R, H, FAST> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { tree, geometry, rays, hits } = self;
+        let Self { tree, geometry, rays, mut hits } = self;
         let mut rest = Vec::new();
         let mut scratch = packet::Scratch::new(tree);
-        let pieces = rays.chunks(packet::RAYS).zip(hits.chunks_mut(packet::RAYS));
-        for (number, (piece, hits)) in pieces.enumerate() {
-            let first = number * packet::RAYS;
-            simd.prefetch_slice(next_piece(rays, first));
-            let piece = packet::Piece { tree, geometry, rays: piece, first };
-            packet::closest::<S, G, FAST>(simd, &piece, hits, &mut scratch, &mut rest);
+        for first in (0..rays.len()).step_by(packet::RAYS) {
+            prefetch_next(simd, &rays, first);
+            let piece =
+                packet::Piece { tree, geometry, rays: rays.part(first, packet::RAYS), first };
+            let mut hits = hits.part(first, piece.rays.len());
+            packet::closest::<S, G, R, _, FAST>(simd, &piece, &mut hits, &mut scratch, &mut rest);
         }
         for &number in &rest {
-            hits[number] = None;
+            hits.set(number, None);
         }
-        let finish = |number: usize, nearest: Nearest| hits[number] = nearest.into_hit();
-        let spilled = wave::<S, G, _, false, FAST>(simd, tree, geometry, rays, &rest, finish);
+        let finish = |number: usize, nearest: Nearest| hits.set(number, nearest.into_hit());
+        let spilled = wave::<S, G, R, _, false, FAST>(simd, tree, geometry, rays, &rest, finish);
         for number in spilled {
-            hits[number] = tree.intersect(geometry, &rays[number], &mut ());
+            hits.set(number, tree.intersect(geometry, &rays.ray(number), &mut ()));
         }
     }
 }
 
-/// The rays of the packet after that which begins with `first`: processors do not foresee that these are next, as other memory is read in between.
+/// Asks for the rays of the packet after that which begins with `first`: processors do not foresee that these are next, as other memory is read in between.
 #[inline(always)]
-fn next_piece(rays: &[Ray], first: usize) -> &[Ray] {
-    let start = (first + packet::RAYS).min(rays.len());
-    &rays[start..(start + packet::RAYS).min(rays.len())]
+fn prefetch_next<S: Simd, R: Source>(simd: S, rays: &R, first: usize) {
+    rays.part(first + packet::RAYS, packet::RAYS).prefetch(simd);
 }
 
 /// Finds out whether anything blocks each of many rays.
-pub(super) struct Any<'a, G, const FAST: bool> {
+pub(super) struct Any<'a, G, R, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
-    pub(super) rays: &'a [Ray],
+    pub(super) rays: R,
     pub(super) occluded: &'a mut [bool],
 }
 
-impl<G: Geometry, const FAST: bool> Kernel for Any<'_, G, FAST> {
+impl<G: Geometry, R: Source, const FAST: bool> Kernel for Any<'_, G, R, FAST> {
     type Output = ();
 
     #[inline(always)]
@@ -73,20 +74,20 @@ impl<G: Geometry, const FAST: bool> Kernel for Any<'_, G, FAST> {
         let Self { tree, geometry, rays, occluded } = self;
         let mut rest = Vec::new();
         let mut scratch = packet::Scratch::new(tree);
-        let pieces = rays.chunks(packet::RAYS).zip(occluded.chunks_mut(packet::RAYS));
-        for (number, (piece, occluded)) in pieces.enumerate() {
+        for (number, occluded) in occluded.chunks_mut(packet::RAYS).enumerate() {
             let first = number * packet::RAYS;
-            simd.prefetch_slice(next_piece(rays, first));
-            let piece = packet::Piece { tree, geometry, rays: piece, first };
-            packet::any::<S, G, FAST>(simd, &piece, occluded, &mut scratch, &mut rest);
+            prefetch_next(simd, &rays, first);
+            let piece =
+                packet::Piece { tree, geometry, rays: rays.part(first, packet::RAYS), first };
+            packet::any::<S, G, R, FAST>(simd, &piece, occluded, &mut scratch, &mut rest);
         }
         for &number in &rest {
             occluded[number] = false;
         }
         let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
-        let spilled = wave::<S, G, _, true, FAST>(simd, tree, geometry, rays, &rest, finish);
+        let spilled = wave::<S, G, R, _, true, FAST>(simd, tree, geometry, rays, &rest, finish);
         for number in spilled {
-            occluded[number] = tree.occluded(geometry, &rays[number], &mut ());
+            occluded[number] = tree.occluded(geometry, &rays.ray(number), &mut ());
         }
     }
 }
@@ -97,21 +98,28 @@ const IDLE: u32 = Reference::NOTHING.0 - 2;
 /// Traces all valid rays and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that found no room
 /// for their stacks and must be traced otherwise.
 #[inline(always)]
-fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool>(
+fn wave<
+    S: Simd,
+    G: Geometry,
+    R: Source,
+    F: FnMut(usize, Nearest),
+    const ANY: bool,
+    const FAST: bool,
+>(
     simd: S,
     tree: &WideBvh,
     geometry: &G,
-    rays: &[Ray],
+    rays: R,
     numbers: &[usize],
     mut finish: F,
 ) -> Vec<usize> {
-    let rays = numbers.iter().map(|&number| (number, &rays[number]));
+    let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
     let mut waiting = rays.filter(|(_, ray)| ray.is_valid());
     let mut flights = Vec::with_capacity(RAYS.min(numbers.len()));
     let mut currents = [IDLE; RAYS];
     for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
         *current = tree.root.0;
-        flights.push(Flight::new(ray, number, tree.reach));
+        flights.push(Flight::new(&ray, number, tree.reach));
     }
     let flights = &mut flights[..];
     let mut spilled = Vec::new();
@@ -134,7 +142,7 @@ fn wave<S: Simd, G: Geometry, F: FnMut(usize, Nearest), const ANY: bool, const F
             finish(flight.number, ended);
             currents[place] = IDLE;
             if let Some((number, ray)) = waiting.next() {
-                flight.begin(ray, number, tree.reach);
+                flight.begin(&ray, number, tree.reach);
                 currents[place] = tree.root.0;
             }
         }

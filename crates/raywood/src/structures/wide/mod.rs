@@ -8,7 +8,9 @@ mod flight;
 mod node;
 mod packet;
 mod single;
+mod sink;
 mod slabs;
+mod source;
 mod step;
 #[cfg(test)]
 mod tests;
@@ -20,8 +22,11 @@ use crate::{
     Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, TriangleTest,
     ValidationError,
 };
+use crate::{HitColumnsMut, Vec3};
 use node::Reference;
 pub(crate) use node::WideNode;
+use sink::Sink;
+use source::Source;
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
 /// [`SimdLevel`].
@@ -79,6 +84,34 @@ impl WideBvh {
         self.arena.address(reference.line())
     }
 
+    /// The closest hits of many rays.
+    fn closest_of_batch<G: Geometry, R: Source, H: Sink>(&self, geometry: &G, rays: R, hits: H) {
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                batch::Closest::<_, _, _, false> { tree: self, geometry, rays, hits },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                batch::Closest::<_, _, _, true> { tree: self, geometry, rays, hits },
+            ),
+        }
+    }
+
+    /// Whether anything blocks each of many rays.
+    fn any_of_batch<G: Geometry, R: Source>(&self, geometry: &G, rays: R, occluded: &mut [bool]) {
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                batch::Any::<_, _, false> { tree: self, geometry, rays, occluded },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                batch::Any::<_, _, true> { tree: self, geometry, rays, occluded },
+            ),
+        }
+    }
+
     /// How many items the stack of a traversal has room for: of each node on the way all children but one stay behind, below them lies the mark of
     /// the end, and sixteen are stored before it is known how many count. A multiple of sixteen.
     fn stack_size(&self) -> usize {
@@ -119,29 +152,31 @@ impl AccelerationStructure for WideBvh {
     }
 
     fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                batch::Closest::<_, false> { tree: self, geometry, rays, hits },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                batch::Closest::<_, true> { tree: self, geometry, rays, hits },
-            ),
-        }
+        self.closest_of_batch(geometry, rays, hits);
     }
 
     fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                batch::Any::<_, false> { tree: self, geometry, rays, occluded },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                batch::Any::<_, true> { tree: self, geometry, rays, occluded },
-            ),
-        }
+        self.any_of_batch(geometry, rays, occluded);
+    }
+
+    fn intersect_from<G: Geometry>(
+        &self,
+        geometry: &G,
+        origin: Vec3,
+        directions: &[Vec3],
+        hits: HitColumnsMut<'_>,
+    ) {
+        self.closest_of_batch(geometry, source::FromPoint { origin, directions }, hits);
+    }
+
+    fn occluded_towards<G: Geometry>(
+        &self,
+        geometry: &G,
+        (target, end): (Vec3, f32),
+        points: &[Vec3],
+        occluded: &mut [bool],
+    ) {
+        self.any_of_batch(geometry, source::Towards { target, points, end }, occluded);
     }
 
     fn simd_level(&self) -> Option<SimdLevel> {

@@ -95,10 +95,13 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
                 // What was there before must not matter.
                 let nonsense = Hit { t: 7.0, u: 7.0, v: 7.0, primitive: 7, instance: 7 };
                 let hits = &mut vec![Some(nonsense); size][..];
-                dispatch_on(level, batch::Closest::<_, false> { tree, geometry, rays, hits });
+                dispatch_on(
+                    level,
+                    batch::Closest::<_, _, _, false> { tree, geometry, rays, hits: &mut *hits },
+                );
                 assert!(*hits == expected[..size], "{what}: a batch of {size}");
                 let occluded = &mut vec![true; size][..];
-                dispatch_on(level, batch::Any::<_, false> { tree, geometry, rays, occluded });
+                dispatch_on(level, batch::Any::<_, _, false> { tree, geometry, rays, occluded });
                 let right = occluded.iter().zip(&expected).all(|(o, hit)| *o == hit.is_some());
                 assert!(right, "{what}: a batch of {size} for any hit");
             }
@@ -116,9 +119,12 @@ fn fast_tests_find_nearly_the_same() {
     for &level in SimdLevel::ALL.iter().filter(|level| level.is_available()) {
         let geometry = &things;
         let hits = &mut vec![None; rays.len()][..];
-        dispatch_on(level, batch::Closest::<_, true> { tree, geometry, rays, hits });
+        dispatch_on(
+            level,
+            batch::Closest::<_, _, _, true> { tree, geometry, rays, hits: &mut *hits },
+        );
         let occluded = &mut vec![false; rays.len()][..];
-        dispatch_on(level, batch::Any::<_, true> { tree, geometry, rays, occluded });
+        dispatch_on(level, batch::Any::<_, _, true> { tree, geometry, rays, occluded });
         let mut different = 0;
         for ((ray, hit), occluded) in rays.iter().zip(&*hits).zip(&*occluded) {
             let probe = &mut ();

@@ -2,7 +2,8 @@
 
 use super::frame::Frame;
 use super::{GROUP, Groups, NONE, Packet, RAYS};
-use crate::simd::{Float, Simd, as_rows};
+use crate::simd::{Float, Simd};
+use crate::structures::wide::source::{self, Source};
 use crate::{Ray, Vec3};
 
 /// Rays that rise more steeply against the packet's main axis do not come with it.
@@ -16,10 +17,6 @@ const ROUNDINGS: f32 = 4.0 * f32::EPSILON;
 
 /// Rays that end from here on, and before one, are taken for such that stop a little before the point that they go to.
 const NEARLY_ONE: f32 = 0.99;
-
-/// What fills up the last group: not valid.
-const NO_RAY: Ray =
-    Ray { origin: Vec3::ZERO, t_min: f32::NAN, direction: Vec3::ZERO, t_max: f32::NAN };
 
 /// Rays in the order in which they come.
 const NUMBERS: [[u8; GROUP]; GROUP] = {
@@ -41,15 +38,21 @@ enum Common {
 
 impl Common {
     /// What most rays have in common, judged by a few of them.
-    fn of(rays: &[Ray], any: bool) -> Option<Self> {
-        let samples = [0, 1, 2, 3, 4].map(|part| &rays[part * (rays.len() - 1) / 4]);
+    fn of<R: Source>(rays: &R, any: bool) -> Option<Self> {
+        let middle = rays.ray(rays.len() / 2);
+        match R::COMMON {
+            Some(source::Common::Origin) => return Some(Self::Origin(middle.origin)),
+            Some(source::Common::Target) => return Some(Self::Target(middle.at(1.0))),
+            None => {}
+        }
+        let samples = [0, 1, 2, 3, 4].map(|part| rays.ray(part * (rays.len() - 1) / 4));
         let middle = samples[2];
         if samples.iter().filter(|ray| ray.origin == middle.origin).count() >= 3 {
             return Some(Self::Origin(middle.origin));
         }
-        let point = middle.at(length(middle));
+        let point = middle.at(length(&middle));
         let most = allowance(point, middle.origin);
-        let close = |ray: &&&Ray| passed(ray, point) <= most;
+        let close = |ray: &&Ray| passed(ray, point) <= most;
         (any && point.is_finite() && samples.iter().filter(close).count() >= 3)
             .then_some(Self::Target(point))
     }
@@ -75,10 +78,10 @@ impl Packet {
     /// Makes the packet of at most 256 rays. Numbers of rays that do not fit in are appended to `rest`, counted from `first`; if none are left
     /// there is no packet, and the answer is `false`.
     #[inline(always)]
-    pub(super) fn gather<S: Simd, const ANY: bool>(
+    pub(super) fn gather<S: Simd, R: Source, const ANY: bool>(
         &mut self,
         simd: S,
-        rays: &[Ray],
+        rays: &R,
         rest: &mut Vec<usize>,
         first: usize,
     ) -> bool {
@@ -87,16 +90,16 @@ impl Packet {
             rest.extend(first..first + rays.len());
             return false;
         };
-        let middle = rays[rays.len() / 2].direction;
+        let middle = rays.ray(rays.len() / 2);
         // Rays with a common end are looked at from there.
         let (point, turned) = match common {
             Common::Origin(origin) => {
-                self.frame = Frame::new(origin, 0.0, middle);
+                self.frame = Frame::new(origin, 0.0, middle.direction);
                 (origin, 1.0)
             }
             Common::Target(target) => {
-                self.frame =
-                    Frame::new(target, allowance(target, rays[rays.len() / 2].origin), -middle);
+                let offset = allowance(target, middle.origin);
+                self.frame = Frame::new(target, offset, -middle.direction);
                 (target, -1.0)
             }
         };
@@ -112,16 +115,7 @@ impl Packet {
         for group in 0..GROUP {
             // Sixteen rays, coordinate by coordinate; what is missing behind the last is no ray.
             let here = rays.len().saturating_sub(group * GROUP).min(GROUP);
-            let columns = match rays.get(group * GROUP..).and_then(<[Ray]>::first_chunk) {
-                Some(rays) => simd.columns(as_rows(rays)),
-                None => {
-                    let mut filled = [NO_RAY; GROUP];
-                    let first = rays.len() - here;
-                    filled[..here].copy_from_slice(&rays[first..]);
-                    simd.columns(as_rows(&filled))
-                }
-            };
-            let [ox, oy, oz, start, dx, dy, dz, end] = columns;
+            let [ox, oy, oz, start, dx, dy, dz, end] = rays.columns(simd, group * GROUP);
             let d = [dx, dy, dz];
 
             // Which of them pass through the point, and where on their way.
@@ -132,7 +126,10 @@ impl Packet {
                 }
                 Common::Target(_) => {
                     let nearly = simd.splat16(NEARLY_ONE).less_or_equal(end) & end.less(one);
-                    let length = end.replaced(nearly, one);
+                    let length = match R::COMMON {
+                        Some(_) => one,
+                        None => end.replaced(nearly, one),
+                    };
                     let x = dx.mul_add(length, ox) - origin[0];
                     let y = dy.mul_add(length, oy) - origin[1];
                     let z = dz.mul_add(length, oz) - origin[2];

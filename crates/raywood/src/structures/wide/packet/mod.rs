@@ -13,10 +13,12 @@ mod triangles;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
+use super::sink::{Sink, SixteenHits};
+use super::source::Source;
 use super::step::others;
 use crate::simd::{Float, Simd};
 use crate::traverse::nearest::hit as hit_one;
-use crate::{Geometry, Hit, PreparedRay, Ray};
+use crate::{Geometry, Hit, HitColumns, PreparedRay};
 use frame::Frame;
 use groups::Groups;
 use triangles::{GREATEST_VOLUME, Triangles};
@@ -67,8 +69,11 @@ const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 /// A group is given up when it was tested against more triangles than this: about as long does it take to trace its rays one by one.
 const MOST_WORK: f32 = 128.0;
 
+/// What an edge function's error hardly ever exceeds, as a share of what it may be.
+const LIKELY_ERROR: f32 = 1.0 / 16.0;
+
 /// Stands for a primitive where none was hit.
-const NONE: u32 = u32::MAX;
+const NONE: u32 = HitColumns::NONE;
 
 /// What waits to be visited.
 #[derive(Clone, Copy)]
@@ -81,11 +86,11 @@ struct Item {
 }
 
 /// Rays for a packet, and what they are sent through.
-pub(super) struct Piece<'a, G> {
+pub(super) struct Piece<'a, G, R> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a G,
     /// At most 256.
-    pub(super) rays: &'a [Ray],
+    pub(super) rays: R,
     /// The number of the first among all rays of the batch.
     pub(super) first: usize,
 }
@@ -105,47 +110,35 @@ impl Scratch {
 
 /// Finds the closest hits of rays that share their origin. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn closest<S: Simd, G: Geometry, const FAST: bool>(
+pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool>(
     simd: S,
-    piece: &Piece<'_, G>,
-    hits: &mut [Option<Hit>],
+    piece: &Piece<'_, G, R>,
+    hits: &mut H,
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    if packet.gather::<S, false>(simd, piece.rays, rest, piece.first) {
+    if packet.gather::<S, R, false>(simd, &piece.rays, rest, piece.first) {
         // While the packet is under way, the place for its hits arrives.
-        simd.prefetch_slice(hits);
-        packet.trace::<S, G, false, FAST>(simd, piece, stack);
-        packet.finish(simd, piece.rays, hits, rest, piece.first);
+        hits.prefetch(simd);
+        packet.trace::<S, G, R, false, FAST>(simd, piece, stack);
+        packet.finish(simd, &piece.rays, hits, rest, piece.first);
     }
 }
 
 /// Finds out whether anything blocks rays that share their origin or their end. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn any<S: Simd, G: Geometry, const FAST: bool>(
+pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
     simd: S,
-    piece: &Piece<'_, G>,
+    piece: &Piece<'_, G, R>,
     occluded: &mut [bool],
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    if packet.gather::<S, true>(simd, piece.rays, rest, piece.first) {
-        packet.trace::<S, G, true, FAST>(simd, piece, stack);
-        for group in 0..GROUP {
-            for lane in 0..GROUP {
-                let number = usize::from(packet.numbers[group][lane]);
-                let is_member = packet.members[group] >> lane & 1 == 1;
-                let is_blocked = packet.nearest[group][lane] == f32::INFINITY;
-                if number < occluded.len() {
-                    occluded[number] = is_member && is_blocked;
-                }
-                if packet.alone[group] >> lane & 1 == 1 && !is_blocked {
-                    rest.push(piece.first + number);
-                }
-            }
-        }
+    if packet.gather::<S, R, true>(simd, &piece.rays, rest, piece.first) {
+        packet.trace::<S, G, R, true, FAST>(simd, piece, stack);
+        packet.finish_any(simd, occluded, rest, piece.first);
     }
 }
 
@@ -172,10 +165,10 @@ impl Packet {
 
     /// Sends the packet through the tree.
     #[inline(always)]
-    fn trace<S: Simd, G: Geometry, const ANY: bool, const FAST: bool>(
+    fn trace<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
         &mut self,
         simd: S,
-        piece: &Piece<'_, G>,
+        piece: &Piece<'_, G, R>,
         stack: &mut [Item],
     ) {
         if piece.tree.root == Reference::NOTHING {
@@ -193,7 +186,7 @@ impl Packet {
                 continue;
             }
             if reference.is_leaf() {
-                self.visit_leaf::<S, G, ANY, FAST>(simd, piece, reference, groups);
+                self.visit_leaf::<S, G, R, ANY, FAST>(simd, piece, reference, groups);
             } else {
                 top += self.enter_node(simd, piece.tree, reference, groups, &mut stack[top..]);
             }
@@ -251,10 +244,10 @@ impl Packet {
 
     /// Tests the primitives of a leaf against the rays of some groups.
     #[inline(always)]
-    fn visit_leaf<S: Simd, G: Geometry, const ANY: bool, const FAST: bool>(
+    fn visit_leaf<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
         &mut self,
         simd: S,
-        piece: &Piece<'_, G>,
+        piece: &Piece<'_, G, R>,
         leaf: Reference,
         groups: u32,
     ) {
@@ -286,7 +279,7 @@ impl Packet {
                 let doubtful =
                     self.test::<S, ANY, FAST>(simd, &triangles, lane, group % GROUP, primitive);
                 if doubtful != 0 {
-                    self.settle::<G, ANY>(piece, leaf, lane, group, doubtful);
+                    self.settle::<G, R, ANY>(piece, leaf, lane, group, doubtful);
                 }
             }
         }
@@ -296,7 +289,7 @@ impl Packet {
             left &= left - 1;
             touched |= groups;
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
-                self.settle::<G, ANY>(piece, leaf, lane, group, self.members[group]);
+                self.settle::<G, R, ANY>(piece, leaf, lane, group, self.members[group]);
             }
         }
 
@@ -344,8 +337,8 @@ impl Packet {
                 least,
                 depth,
                 [edge_b, edge_c],
-                group,
-                primitive,
+                (group, primitive),
+                triangles.errors[lane],
             );
         }
         let (error, certainly) = (triangles.errors[lane], triangles.certain[lane]);
@@ -378,18 +371,23 @@ impl Packet {
         least: S::F16,
         depth: S::F16,
         weights: [S::F16; 2],
-        group: usize,
-        primitive: f32,
+        (group, primitive): (usize, f32),
+        error: f32,
     ) -> u32 {
         let nearest = simd.load16(&self.nearest[group]);
-        let hit = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
         if ANY {
-            let hit = hit & depth.less(simd.splat16(self.start));
+            // Seen from the light triangles are small, and at silhouettes rounding tells by some millionths wrongly which rays are in shadow.
+            let likely = simd.splat16(error * LIKELY_ERROR);
+            let near_edge = simd.splat16(0.0) - likely;
+            let before = nearest.less(depth) & depth.less(simd.splat16(self.start));
+            let possible = near_edge.less_or_equal(least) & before;
+            let hit = likely.less(least) & before;
             let blocked = simd.splat16(f32::INFINITY);
             self.nearest[group] = nearest.replaced(hit, blocked).to_array();
-        } else {
-            self.take(simd, hit, depth, weights, group, primitive);
+            return possible & !hit;
         }
+        let inside = simd.splat16(0.0).less_or_equal(least);
+        self.take(simd, inside & nearest.less(depth), depth, weights, group, primitive);
         0
     }
 
@@ -420,9 +418,9 @@ impl Packet {
     /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
     #[cold]
     #[inline(never)]
-    fn settle<G: Geometry, const ANY: bool>(
+    fn settle<G: Geometry, R: Source, const ANY: bool>(
         &mut self,
-        piece: &Piece<'_, G>,
+        piece: &Piece<'_, G, R>,
         leaf: Reference,
         lane: usize,
         group: usize,
@@ -435,8 +433,8 @@ impl Packet {
             if self.nearest[group][place] == f32::INFINITY {
                 continue;
             }
-            let Some(ray) = PreparedRay::new(&piece.rays[usize::from(self.numbers[group][place])])
-            else {
+            let number = usize::from(self.numbers[group][place]);
+            let Some(ray) = PreparedRay::new(&piece.rays.ray(number)) else {
                 continue;
             };
             let hit = match is_triangle {
@@ -465,56 +463,109 @@ impl Packet {
 
     /// Writes what was found.
     #[inline(always)]
-    fn finish<S: Simd>(
+    fn finish<S: Simd, R: Source, H: Sink>(
         &self,
         simd: S,
-        rays: &[Ray],
-        hits: &mut [Option<Hit>],
+        rays: &R,
+        hits: &mut H,
         rest: &mut Vec<usize>,
         first: usize,
     ) {
-        let one = simd.splat16(1.0);
-        for group in 0..hits.len().div_ceil(GROUP) {
-            let depth = one / simd.load16(&self.nearest[group]);
-            let t = (depth * simd.load16(&self.scales[group])).to_array();
-            let u = (depth * simd.load16(&self.weights[0][group])).to_array();
-            let v = (depth * simd.load16(&self.weights[1][group])).to_array();
-            let primitives = &self.primitives[group];
-            if let (false, Some(hits)) = (self.is_sorted, hits[group * GROUP..].first_chunk_mut()) {
-                let hits: &mut [Option<Hit>; GROUP] = hits;
-                for lane in 0..GROUP {
-                    hits[lane] = hit(t[lane], u[lane], v[lane], primitives[lane]);
-                }
+        let (zero, one) = (simd.splat16(0.0), simd.splat16(1.0));
+        for group in 0..rays.len().div_ceil(GROUP) {
+            let nearest = simd.load16(&self.nearest[group]);
+            let depth = one / nearest;
+            let found = SixteenHits {
+                t: depth * simd.load16(&self.scales[group]),
+                u: depth * simd.load16(&self.weights[0][group]),
+                v: depth * simd.load16(&self.weights[1][group]),
+                primitives: self.primitives[group],
+                hit: zero.less(nearest),
+            };
+            if self.is_sorted || self.is_bounded {
+                let numbers = [found.t.to_array(), found.u.to_array(), found.v.to_array()];
+                self.finish_apart(rays, group, numbers, hits, (rest, first));
             } else {
-                for lane in 0..GROUP {
-                    let number = usize::from(self.numbers[group][lane]);
-                    if let Some(found) = hits.get_mut(number) {
-                        *found = hit(t[lane], u[lane], v[lane], primitives[lane]);
-                    }
-                }
+                hits.set_sixteen(simd, group * GROUP, found);
             }
             if self.alone[group] != 0 {
                 let alone = (0..GROUP).filter(|lane| self.alone[group] >> lane & 1 == 1);
                 rest.extend(alone.map(|lane| first + usize::from(self.numbers[group][lane])));
             }
         }
+    }
 
-        // So near to the ray's end that only the exact test can tell.
-        if self.is_bounded {
-            for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
-                if hit.is_some_and(|hit| hit.t > ray.t_max * NEARLY) {
-                    rest.push(first + number);
+    /// Writes what the rays of a group found one by one: in their own order, and not what lies so near to a ray's end that only the exact test can tell.
+    #[inline(never)]
+    fn finish_apart<R: Source, H: Sink>(
+        &self,
+        rays: &R,
+        group: usize,
+        [t, u, v]: [[f32; GROUP]; 3],
+        hits: &mut H,
+        (rest, first): (&mut Vec<usize>, usize),
+    ) {
+        for lane in 0..GROUP {
+            let number = usize::from(self.numbers[group][lane]);
+            if number >= rays.len() {
+                continue;
+            }
+            let primitive = self.primitives[group][lane].to_bits();
+            let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
+            let hit = (primitive != NONE).then_some(hit);
+            hits.set(number, hit);
+            if self.is_bounded && hit.is_some_and(|hit| hit.t > rays.ray(number).t_max * NEARLY) {
+                rest.push(first + number);
+            }
+        }
+    }
+
+    /// Writes which rays are blocked.
+    #[inline(always)]
+    fn finish_any<S: Simd>(
+        &self,
+        simd: S,
+        occluded: &mut [bool],
+        rest: &mut Vec<usize>,
+        first: usize,
+    ) {
+        let blocked = simd.splat16(f32::INFINITY);
+        for group in 0..occluded.len().div_ceil(GROUP) {
+            let found = blocked.less_or_equal(simd.load16(&self.nearest[group]));
+            let found = found & self.members[group];
+            let answers = &mut occluded[if self.is_sorted { 0 } else { group * GROUP }..];
+            if let (false, Some(answers)) = (self.is_sorted, answers.first_chunk_mut::<GROUP>()) {
+                *answers = truths(found);
+            } else {
+                for (lane, number) in self.numbers[group].iter().enumerate() {
+                    if let Some(answer) = occluded.get_mut(usize::from(*number)) {
+                        *answer = found >> lane & 1 == 1;
+                    }
                 }
+            }
+            let alone = self.alone[group] & !found;
+            if alone != 0 {
+                let alone = (0..GROUP).filter(|lane| alone >> lane & 1 == 1);
+                rest.extend(alone.map(|lane| first + usize::from(self.numbers[group][lane])));
             }
         }
     }
 }
 
-/// A hit, if there is one. `primitive` are the bits of its number.
+/// Each of sixteen bits as a truth value.
 #[inline(always)]
-fn hit(t: f32, u: f32, v: f32, primitive: f32) -> Option<Hit> {
-    let primitive = primitive.to_bits();
-    (primitive != NONE).then_some(Hit { t, u, v, primitive, instance: 0 })
+fn truths(bits: u32) -> [bool; GROUP] {
+    let mut truths = [false; GROUP];
+    for (half, truths) in truths.chunks_exact_mut(8).enumerate() {
+        // The bits eight times, a byte each; of each byte the bit of its number; and that moved to the lowest place.
+        let copies = u64::from(bits >> (8 * half) & 0xff) * 0x0101_0101_0101_0101;
+        let single = copies & 0x8040_2010_0804_0201;
+        let lowest = (single + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101;
+        for (truth, byte) in truths.iter_mut().zip(lowest.to_le_bytes()) {
+            *truth = byte != 0;
+        }
+    }
+    truths
 }
 
 /// From this share of a ray's length on a hit may lie beyond its end.

@@ -1,0 +1,173 @@
+//! Where rays come from: a slice of them, or a point that they share and what else each one has.
+//!
+//! Rays are made from this 16 at a time, coordinate by coordinate, or one by one where something goes on alone.
+
+use crate::simd::{Simd, as_rows};
+use crate::{Ray, Vec3};
+
+/// Rays of a batch, or of a packet of it.
+pub(super) trait Source: Copy {
+    /// Whether all rays pass through a point that is known.
+    const COMMON: Option<Common>;
+
+    /// How many rays.
+    fn len(&self) -> usize;
+
+    /// A ray.
+    fn ray(&self, number: usize) -> Ray;
+
+    /// Up to `count` rays from `start` on, as far as there are any.
+    fn part(&self, start: usize, count: usize) -> Self;
+
+    /// Sixteen rays from `start` on as columns: origins, starts, directions, ends. What is missing behind the last is no ray.
+    fn columns<S: Simd>(&self, simd: S, start: usize) -> [S::F16; 8];
+
+    /// Asks for the memory of all rays.
+    fn prefetch<S: Simd>(&self, simd: S);
+}
+
+/// What rays have in common.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Common {
+    Origin,
+    Target,
+}
+
+/// The part of a slice from `start` on, of at most `count` items.
+#[inline(always)]
+fn part<T>(items: &[T], start: usize, count: usize) -> &[T] {
+    let start = start.min(items.len());
+    &items[start..(start + count).min(items.len())]
+}
+
+impl Source for &[Ray] {
+    const COMMON: Option<Common> = None;
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        <[Ray]>::len(self)
+    }
+
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        self[number]
+    }
+
+    #[inline(always)]
+    fn part(&self, start: usize, count: usize) -> Self {
+        part(self, start, count)
+    }
+
+    #[inline(always)]
+    fn columns<S: Simd>(&self, simd: S, start: usize) -> [S::F16; 8] {
+        const NO_RAY: Ray =
+            Ray { origin: Vec3::ZERO, t_min: f32::NAN, direction: Vec3::ZERO, t_max: f32::NAN };
+        match self.get(start..).and_then(<[Ray]>::first_chunk) {
+            Some(rays) => simd.columns(as_rows(rays)),
+            None => {
+                let rays = part(self, start, 16);
+                let mut filled = [NO_RAY; 16];
+                filled[..rays.len()].copy_from_slice(rays);
+                simd.columns(as_rows(&filled))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, simd: S) {
+        simd.prefetch_slice(self);
+    }
+}
+
+/// Sixteen points or directions from `start` on as columns; what is missing is NaN.
+#[inline(always)]
+fn vectors<S: Simd>(simd: S, items: &[Vec3], start: usize) -> [S::F16; 3] {
+    match items.get(start..).and_then(<[Vec3]>::first_chunk) {
+        Some(items) => simd.vector_columns(items),
+        None => {
+            let items = part(items, start, 16);
+            let mut filled = [Vec3::splat(f32::NAN); 16];
+            filled[..items.len()].copy_from_slice(items);
+            simd.vector_columns(&filled)
+        }
+    }
+}
+
+/// Rays from one point without an end: their directions.
+#[derive(Clone, Copy)]
+pub(super) struct FromPoint<'a> {
+    pub(super) origin: Vec3,
+    pub(super) directions: &'a [Vec3],
+}
+
+impl Source for FromPoint<'_> {
+    const COMMON: Option<Common> = Some(Common::Origin);
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.directions.len()
+    }
+
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        Ray::new(self.origin, self.directions[number])
+    }
+
+    #[inline(always)]
+    fn part(&self, start: usize, count: usize) -> Self {
+        Self { directions: part(self.directions, start, count), ..*self }
+    }
+
+    #[inline(always)]
+    fn columns<S: Simd>(&self, simd: S, start: usize) -> [S::F16; 8] {
+        let [x, y, z] = vectors(simd, self.directions, start);
+        let Vec3 { x: ox, y: oy, z: oz } = self.origin;
+        let (ox, oy, oz) = (simd.splat16(ox), simd.splat16(oy), simd.splat16(oz));
+        [ox, oy, oz, simd.splat16(0.0), x, y, z, simd.splat16(f32::INFINITY)]
+    }
+
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, simd: S) {
+        simd.prefetch_slice(self.directions);
+    }
+}
+
+/// Rays from points to one that they share: as [`Ray::between`], over the interval from 0 to `end`.
+#[derive(Clone, Copy)]
+pub(super) struct Towards<'a> {
+    pub(super) target: Vec3,
+    pub(super) points: &'a [Vec3],
+    pub(super) end: f32,
+}
+
+impl Source for Towards<'_> {
+    const COMMON: Option<Common> = Some(Common::Target);
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    #[inline(always)]
+    fn ray(&self, number: usize) -> Ray {
+        Ray::between(self.points[number], self.target).with_interval(0.0, self.end)
+    }
+
+    #[inline(always)]
+    fn part(&self, start: usize, count: usize) -> Self {
+        Self { points: part(self.points, start, count), ..*self }
+    }
+
+    #[inline(always)]
+    fn columns<S: Simd>(&self, simd: S, start: usize) -> [S::F16; 8] {
+        let [x, y, z] = vectors(simd, self.points, start);
+        let Vec3 { x: tx, y: ty, z: tz } = self.target;
+        let (dx, dy, dz) = (simd.splat16(tx) - x, simd.splat16(ty) - y, simd.splat16(tz) - z);
+        [x, y, z, simd.splat16(0.0), dx, dy, dz, simd.splat16(self.end)]
+    }
+
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, simd: S) {
+        simd.prefetch_slice(self.points);
+    }
+}
