@@ -94,22 +94,30 @@ impl CameraRays {
     /// `(0.5, 0.5)`). Its direction is of unit length.
     #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {
+        self.ray_along(self.direction(x, y))
+    }
+
+    /// The direction of unit length through a point of the picture.
+    #[inline(always)]
+    pub(crate) fn direction(&self, x: f32, y: f32) -> Vec3 {
         let direction = self.corner + x * self.step_x + y * self.step_y;
-        Ray::new(self.eye, direction / direction.length())
+        direction / direction.length()
+    }
+
+    /// The ray from the eye in a direction.
+    #[inline(always)]
+    pub(crate) fn ray_along(&self, direction: impl Into<Vec3>) -> Ray {
+        Ray::new(self.eye, direction)
     }
 
     /// The primary rays of the pixel in column `x` and row `y`: [`PixelSamples`] says where they pass.
     #[inline]
     pub fn pixel_rays(&self, x: u32, y: u32, samples: u32) -> impl Iterator<Item = Ray> {
         let pattern = PixelSamples::new(x, y, samples);
-        (0..samples).map(move |index| self.sample_ray(x, y, &pattern, index))
-    }
-
-    /// The primary ray number `index` of the pixel in column `x` and row `y`.
-    #[inline]
-    pub(crate) fn sample_ray(&self, x: u32, y: u32, pattern: &PixelSamples, index: u32) -> Ray {
-        let [dx, dy] = pattern.offset(index);
-        self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
+        (0..samples).map(move |index| {
+            let [dx, dy] = pattern.offset(index);
+            self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
+        })
     }
 
     /// Where points appear in the picture: the inverse of [`ray`](Self::ray).

@@ -4,7 +4,7 @@ use raywood::Vec3;
 use raywood_scene::Rgb;
 
 /// The direction `d` mirrored at a surface with unit normal `n` (either side).
-#[inline]
+#[inline(always)]
 pub fn reflect(d: Vec3, n: Vec3) -> Vec3 {
     d - (2.0 * d.dot(n)) * n
 }
@@ -22,7 +22,7 @@ pub struct Interface {
 ///
 /// `cos_incident` is the cosine between the incoming ray and the normal, 0 to 1; `eta` is the index of refraction on
 /// the side that the ray comes from divided by the one on the other side.
-#[inline]
+#[inline(always)]
 pub fn dielectric(cos_incident: f32, eta: f32) -> Interface {
     let cos_i = cos_incident.clamp(0.0, 1.0);
 
@@ -48,14 +48,14 @@ pub fn dielectric(cos_incident: f32, eta: f32) -> Interface {
 ///
 /// `n` is the unit normal on the side that `d` comes from, `eta` as in [`dielectric`], and `cos_transmitted` what it
 /// answered.
-#[inline]
+#[inline(always)]
 pub fn refract(d: Vec3, n: Vec3, eta: f32, cos_transmitted: f32) -> Vec3 {
     let cos_incident = -d.dot(n);
     eta * d + (eta * cos_incident - cos_transmitted) * n
 }
 
 /// Schlick's approximation (1994) of a mirror that rises to one towards grazing angles, from what it mirrors head-on.
-#[inline]
+#[inline(always)]
 pub fn schlick(head_on: Rgb, cos_incident: f32) -> Rgb {
     let x = (1.0 - cos_incident).clamp(0.0, 1.0);
     let x2 = x * x;

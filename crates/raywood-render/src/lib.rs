@@ -12,6 +12,7 @@ mod integrators;
 mod lights;
 mod options;
 mod png;
+mod power;
 mod prepared;
 mod progress;
 mod render;

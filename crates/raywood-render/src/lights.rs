@@ -19,6 +19,8 @@ pub(crate) struct Illumination {
     pub(crate) direction: Vec3,
     /// What a white diffuse surface facing the light sends out.
     pub(crate) intensity: Rgb,
+    /// Whether it shines there at all; else the rest means nothing.
+    pub(crate) shines: bool,
 }
 
 impl Lights {
@@ -38,40 +40,27 @@ impl Lights {
     }
 }
 
-/// The light as seen from `point`, or `None` where it does not shine.
-#[inline]
-pub(crate) fn illuminate(light: &Light, point: Vec3) -> Option<Illumination> {
-    match light.kind {
-        LightKind::Point { position } => from_position(position, point, light.intensity),
-        LightKind::Spot { position, direction, cos_inner, cos_outer } => {
-            let mut at_point = from_position(position, point, light.intensity)?;
-            let cosine = -at_point.direction.dot(direction);
-            if cosine <= cos_outer {
-                return None;
-            }
-            // The fall-off that the glTF extension KHR_lights_punctual recommends.
-            let inside = ((cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4)).min(1.0);
-            at_point.intensity *= inside * inside;
-            Some(at_point)
-        }
-        LightKind::Directional { direction } => {
-            Some(Illumination { direction: -direction, intensity: light.intensity })
-        }
-        LightKind::Ambient => None,
-    }
+/// The share of a spot light at its full strength that goes in a direction (from the point to the light); zero outside of its cone. The fall-off
+/// that the glTF extension KHR_lights_punctual recommends.
+#[inline(always)]
+pub(crate) fn cone_share(to_light: Vec3, axis: Vec3, cos_inner: f32, cos_outer: f32) -> f32 {
+    let cosine = -to_light.dot(axis);
+    let inside = (cosine - cos_outer) / (cos_inner - cos_outer).max(1e-4);
+    let inside = if inside < 1.0 { inside } else { 1.0 };
+    if cosine > cos_outer { inside * inside } else { 0.0 }
 }
 
 /// A light at a position, seen from a point: it falls with the square of the distance.
-#[inline]
-fn from_position(position: Vec3, point: Vec3, intensity: Rgb) -> Option<Illumination> {
+#[inline(always)]
+pub(crate) fn from_position(position: Vec3, point: Vec3, intensity: Rgb) -> Illumination {
     let towards = position - point;
     let distance = towards.length();
-    // Nothing shines on the very point where it is, nor from farther than numbers reach.
-    if !(distance > 0.0 && distance.is_finite()) {
-        return None;
-    }
     let reciprocal = 1.0 / distance;
     let intensity = (reciprocal * intensity) * reciprocal;
     let direction = reciprocal * towards;
-    intensity.is_finite().then_some(Illumination { direction, intensity })
+    // Nothing shines on the very point where it is, nor from farther than numbers reach. No `&&`, which would be a branch.
+    let shines = (distance > 0.0) & (distance < f32::INFINITY);
+    let finite = (intensity.x < f32::INFINITY) & (intensity.y < f32::INFINITY);
+    let shines = shines & finite & (intensity.z < f32::INFINITY);
+    Illumination { direction, intensity, shines }
 }

@@ -84,7 +84,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// What a ray sees that hits nothing; its direction is of unit length.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn background(&self, direction: Vec3) -> Rgb {
         self.scene.background.color(direction.dot(self.axes.up))
     }
@@ -100,7 +100,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The number of the triangle that a primitive is, or else that of the sphere.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn which(&self, primitive: u32) -> Which {
         match primitive.checked_sub(self.triangle_count) {
             None => Which::Triangle(primitive),
@@ -109,12 +109,12 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The material of a primitive.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn material_of(&self, primitive: u32) -> &SurfaceMaterial {
         &self.materials[self.material_index(primitive)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn material_index(&self, primitive: u32) -> usize {
         let id = match self.which(primitive) {
             Which::Triangle(triangle) => self.scene.mesh.materials.get(triangle as usize),

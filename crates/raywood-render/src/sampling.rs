@@ -31,13 +31,8 @@ impl PixelSamples {
     /// along the edge then counts the same number of points on either side, and the edge is not ragged.
     #[inline]
     pub fn unit_square(&self, index: u32) -> [f32; 2] {
-        let points = [index, sobol_second(index).reverse_bits()];
-        [0, 1].map(|dimension| {
-            let bits = owen_scramble_reversed(points[dimension], self.seeds[dimension]);
-            let middle = (bits.reverse_bits() & self.filled) | self.half;
-            // The bits, most significant first, as a fraction; 24 of them fit a float exactly.
-            (middle >> 8) as f32 * (1.0 / 16_777_216.0)
-        })
+        let point = self.point(index);
+        [0, 1].map(|dimension| point.coordinate(dimension, self.seeds[dimension]))
     }
 
     /// The offset of ray `index` from the pixel's centre, in pixels.
@@ -46,17 +41,63 @@ impl PixelSamples {
     /// Stamminger and Greiner 2006), so that all rays of a pixel weigh the same and pixels stay independent.
     #[inline]
     pub fn offset(&self, index: u32) -> [f32; 2] {
-        if self.samples <= 1 {
-            return [0.0, 0.0];
+        let point = self.point(index);
+        [0, 1].map(|dimension| point.offset(dimension, self.seeds[dimension]))
+    }
+
+    /// What tells this pixel from others.
+    #[inline(always)]
+    pub(crate) fn seeds(&self) -> [u32; 2] {
+        self.seeds
+    }
+
+    /// Point `index` before it is scrambled: the same for all pixels that have as many.
+    #[inline]
+    pub(crate) fn point(&self, index: u32) -> UnscrambledPoint {
+        UnscrambledPoint {
+            bits: [index, sobol_second(index).reverse_bits()],
+            is_single: self.samples <= 1,
+            filled: self.filled,
+            half: self.half,
         }
-        self.unit_square(index).map(tent)
+    }
+}
+
+/// A point of the sequence as it is before a pixel scrambles it.
+#[derive(Clone, Copy)]
+pub(crate) struct UnscrambledPoint {
+    /// The coordinates, bits reversed.
+    bits: [u32; 2],
+    /// Whether it is the only one of its pixel.
+    is_single: bool,
+    filled: u32,
+    half: u32,
+}
+
+impl UnscrambledPoint {
+    /// A coordinate in the unit square in the pixel that has this seed.
+    #[inline(always)]
+    fn coordinate(&self, dimension: usize, seed: u32) -> f32 {
+        let bits = owen_scramble_reversed(self.bits[dimension], seed);
+        let middle = (bits.reverse_bits() & self.filled) | self.half;
+        // The bits, most significant first, as a fraction; 24 of them fit a float exactly.
+        (middle >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// A coordinate of the offset from the centre of the pixel that has this seed.
+    #[inline(always)]
+    pub(crate) fn offset(&self, dimension: usize, seed: u32) -> f32 {
+        let offset = tent(self.coordinate(dimension, seed));
+        if self.is_single { 0.0 } else { offset }
     }
 }
 
 /// A uniform number in 0 to 1 as one distributed like a tent from -1 to 1: the inverse of its cumulative distribution.
-#[inline]
+#[inline(always)]
 fn tent(u: f32) -> f32 {
-    if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() }
+    // One root for both sides, so that no branch is needed.
+    let root = (2.0 * if u < 0.5 { u } else { 1.0 - u }).sqrt();
+    if u < 0.5 { root - 1.0 } else { 1.0 - root }
 }
 
 /// The second dimension of Sobol's sequence as a binary fraction. Its direction numbers are the rows of Pascal's
@@ -76,7 +117,7 @@ fn sobol_second(index: u32) -> u32 {
 
 /// Flips each bit as a hash of the seed and of the bits below it says: Owen's scrambling for a fraction whose bits are
 /// reversed, where multiplications carry upwards only (Laine and Karras 2011).
-#[inline]
+#[inline(always)]
 fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x = x.wrapping_add(seed);
     x ^= x.wrapping_mul(0x6c50_b47c);

@@ -25,7 +25,7 @@ pub(crate) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// The surface at a hit of `ray`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(prepared: &'a PreparedScene<'_>, ray: &Ray, hit: &Hit) -> Self {
         let point = prepared.structure().surface_point(ray, hit);
         let material = prepared.material_of(hit.primitive);
@@ -58,6 +58,7 @@ impl<'a> Surface<'a> {
 
     /// Shades with an interpolated normal, turned to the side of the geometric one: files differ in which way they
     /// point. Vertices without a normal (zero) leave the geometric one.
+    #[inline(always)]
     fn bend_normal(&mut self, interpolated: Vec3) {
         let normal = interpolated.normalize_or_zero();
         let side = normal.dot(self.geometric_normal);
@@ -68,14 +69,14 @@ impl<'a> Surface<'a> {
 
     /// Cosine between the normal for shading and the direction back along `direction`, at least zero: at a silhouette an
     /// interpolated normal may point away from the viewer.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn cos_towards(&self, direction: Vec3) -> f32 {
         (-direction.dot(self.normal)).clamp(0.0, 1.0)
     }
 
     /// The direction in which `direction` is mirrored. Where the normal for shading would send it below the surface, it
     /// is lifted to just above (Keller et al., "The Iray Light Transport Simulation", 2017, appendix).
-    #[inline]
+    #[inline(always)]
     pub(crate) fn mirrored(&self, direction: Vec3) -> Vec3 {
         keep_on_side(reflect(direction, self.normal), self.geometric_normal)
     }
@@ -86,23 +87,19 @@ impl<'a> Surface<'a> {
 /// Light from below the true surface does not count, whatever the normal for shading says. So that this does not
 /// show as dark triangles along the edge of the shadow, it fades out before: Chiang, Li and Burley, "Taming the
 /// Shadow Terminator", 2019.
-#[inline]
+#[inline(always)]
 pub(crate) fn light_cosine(to_light: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
     let geometric = to_light.dot(geometric_normal);
     let shading = to_light.dot(normal);
-    if geometric <= 0.0 || shading <= 0.0 {
-        return 0.0;
-    }
     let bend = normal.dot(geometric_normal);
     let ratio = geometric / (shading * bend);
-    if ratio >= 1.0 {
-        return shading;
-    }
-    shading * ratio * (1.0 + ratio * (1.0 - ratio))
+    let faded = shading * ratio * (1.0 + ratio * (1.0 - ratio));
+    let cosine = if ratio >= 1.0 { shading } else { faded };
+    if (geometric > 0.0) & (shading > 0.0) { cosine } else { 0.0 }
 }
 
 /// A direction pushed to the side of the surface that `normal` points to, if it is not there yet.
-#[inline]
+#[inline(always)]
 pub(crate) fn keep_on_side(direction: Vec3, normal: Vec3) -> Vec3 {
     const SMALLEST_COSINE: f32 = 1e-3;
     let cosine = direction.dot(normal);
@@ -113,7 +110,7 @@ pub(crate) fn keep_on_side(direction: Vec3, normal: Vec3) -> Vec3 {
 }
 
 /// A quantity given per vertex, at a hit; `None` where the mesh does not give it.
-#[inline]
+#[inline(always)]
 fn interpolate(per_vertex: &[Vec3], corners: [u32; 3], hit: &Hit) -> Option<Vec3> {
     let [a, b, c] = corners.map(|vertex| per_vertex.get(vertex as usize).copied());
     Some((1.0 - hit.u - hit.v) * a? + hit.u * b? + hit.v * c?)

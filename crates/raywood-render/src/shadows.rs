@@ -1,63 +1,73 @@
 //! How much of a light reaches a point: the shadow ray, which what is transparent colours and weakens.
 
-use raywood::{Aabb, Ray, SurfacePoint, Vec3};
+use raywood::{Aabb, Hit, Ray, SurfacePoint, Vec3};
 use raywood_scene::{Light, LightKind, Rgb};
 
 use crate::PreparedScene;
 use crate::fresnel::dielectric;
-use crate::lights::illuminate;
+use crate::lights::{Illumination, cone_share, from_position};
 use crate::prepared::SurfaceMaterial;
-use crate::stats::RayCounts;
 
 /// More surfaces than this between a point and a light, and the light counts as hidden.
-const MOST_CROSSINGS: u32 = 32;
+pub(crate) const MOST_CROSSINGS: u32 = 32;
 
 /// Whether what a ray hits may let light through.
 #[inline]
 pub(crate) fn light_may_pass(prepared: &PreparedScene<'_>, ray: &Ray) -> bool {
-    prepared.transmissive_bounds().iter().any(|bounds| may_cross(ray, bounds))
+    let d = ray.direction;
+    let reciprocals = Vec3::new(1.0 / d.x, 1.0 / d.y, 1.0 / d.z);
+    prepared.transmissive_bounds().iter().any(|bounds| may_cross(ray, reciprocals, bounds))
 }
 
-/// The share of the light that reaches the start of a ray towards it; zero in all channels if something opaque is between.
+/// What a shadow ray meets that lets light through.
+pub(crate) struct Passage {
+    /// The share of the light that is let through.
+    pub(crate) share: Rgb,
+    /// Where the ray goes on.
+    pub(crate) origin: Vec3,
+}
+
+/// What a ray towards a light hit lets through; `None` if it is opaque.
 ///
 /// What is transparent lets light through in a straight line, unbent. Each surface takes its Fresnel reflection and tints
 /// like a filter; the inside absorbs by its thickness. Bent light would gather in bright caustics, which Whitted's method
 /// does not follow; straight light at least does not make glass black.
-pub(crate) fn visibility(
-    prepared: &PreparedScene<'_>,
-    mut ray: Ray,
-    light: &Light,
-    cutoff: f32,
-    counts: &mut RayCounts,
-) -> Rgb {
-    let mut share = Rgb::ONE;
-    for _ in 0..MOST_CROSSINGS {
-        counts.shadow += 1;
-        let Some(hit) = prepared.structure().intersect(&ray) else { return share };
-        let material = prepared.material_of(hit.primitive);
-        if !material.transmissive {
-            return Rgb::ZERO;
-        }
-        let surface = prepared.structure().surface_point(&ray, &hit);
-        let length = ray.direction.length();
-        let cosine = ray.direction.dot(surface.normal) / length;
-        share = share * filter(material, cosine, hit.t * length);
-        if share.max_element() < cutoff {
-            return Rgb::ZERO;
-        }
-        ray = ray_towards_light(light, surface.origin_towards(ray.direction));
+pub(crate) fn passage(prepared: &PreparedScene<'_>, ray: &Ray, hit: &Hit) -> Option<Passage> {
+    let material = prepared.material_of(hit.primitive);
+    if !material.transmissive {
+        return None;
     }
-    Rgb::ZERO
+    let surface = prepared.structure().surface_point(ray, hit);
+    let length = ray.direction.length();
+    let cosine = ray.direction.dot(surface.normal) / length;
+    let share = filter(material, cosine, hit.t * length);
+    Some(Passage { share, origin: surface.origin_towards(ray.direction) })
 }
 
 /// The ray that asks whether a light reaches a surface; `None` where the light does not shine.
 pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Option<Ray> {
-    let towards = illuminate(light, point.position)?.direction;
+    let towards = match light.kind {
+        LightKind::Point { position } => {
+            shining(from_position(position, point.position, light.intensity))?
+        }
+        LightKind::Spot { position, direction, cos_inner, cos_outer } => {
+            let towards = shining(from_position(position, point.position, light.intensity))?;
+            let share = cone_share(towards, direction, cos_inner, cos_outer);
+            if share > 0.0 { towards } else { return None }
+        }
+        LightKind::Directional { direction } => -direction,
+        LightKind::Ambient => return None,
+    };
     Some(ray_towards_light(light, point.origin_towards(towards)))
 }
 
+/// The direction to a light that shines.
+fn shining(light: Illumination) -> Option<Vec3> {
+    light.shines.then_some(light.direction)
+}
+
 /// The ray from where shadow rays start to a light.
-#[inline]
+#[inline(always)]
 pub(crate) fn ray_towards_light(light: &Light, origin: Vec3) -> Ray {
     match light.kind {
         LightKind::Point { position } | LightKind::Spot { position, .. } => {
@@ -92,14 +102,13 @@ pub(crate) fn transmittance(absorption: Rgb, length: f32) -> Rgb {
 
 /// Whether a ray may meet a box; false only if it cannot (Kay and Kajiya 1986, with a margin for rounding).
 #[inline]
-fn may_cross(ray: &Ray, bounds: &Aabb) -> bool {
+fn may_cross(ray: &Ray, reciprocals: Vec3, bounds: &Aabb) -> bool {
     let (mut near, mut far) = (ray.t_min, ray.t_max);
     let reach = (bounds.min - ray.origin).abs().max((bounds.max - ray.origin).abs());
     let margin = 16.0 * f32::EPSILON * reach.max_element();
     for axis in 0..3 {
-        let reciprocal = 1.0 / ray.direction[axis];
-        let a = (bounds.min[axis] - margin - ray.origin[axis]) * reciprocal;
-        let b = (bounds.max[axis] + margin - ray.origin[axis]) * reciprocal;
+        let a = (bounds.min[axis] - margin - ray.origin[axis]) * reciprocals[axis];
+        let b = (bounds.max[axis] + margin - ray.origin[axis]) * reciprocals[axis];
         // NaN (in the plane of a face, along it) leaves the interval as it is.
         near = near.max(a.min(b));
         far = far.min(a.max(b));

@@ -55,6 +55,7 @@ const OFF_LATTICE: f32 = 1.0 / 1024.0;
 
 impl Pattern {
     /// The colour at a point in space of a surface whose diffuse colour is `base`.
+    #[inline(always)]
     pub fn color(&self, base: Rgb, point: Vec3) -> Rgb {
         match *self {
             Self::Plain => base,
@@ -73,6 +74,7 @@ impl Pattern {
 }
 
 /// Marble of one stone; veins about one apart.
+#[inline(always)]
 fn marble(base: Rgb, vein: Rgb, p: Vec3) -> Rgb {
     // Veins are where a folded noise crosses zero: thin sheets through space.
     let folds = fractal3(p, 4, 17);
@@ -83,6 +85,7 @@ fn marble(base: Rgb, vein: Rgb, p: Vec3) -> Rgb {
 }
 
 /// A chequered floor of marble tiles.
+#[inline(always)]
 fn tiles(a: Rgb, b: Rgb, p: Vec3, size: f32, edge: [f32; 2], joint: f32) -> Rgb {
     // Which tile, and how far from its nearest edge.
     let along = (p.x * edge[0] + p.z * edge[1]) / size + OFF_LATTICE;
@@ -105,6 +108,7 @@ fn tiles(a: Rgb, b: Rgb, p: Vec3, size: f32, edge: [f32; 2], joint: f32) -> Rgb 
 }
 
 /// A wall of blocks in staggered courses.
+#[inline(always)]
 fn masonry(base: Rgb, p: Vec3, length: f32, height: f32, joint: f32) -> Rgb {
     // Along a wall only one of x and z changes, so their sum measures the length on walls of both directions.
     let course = p.y / height + OFF_LATTICE;

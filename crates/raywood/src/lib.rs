@@ -63,7 +63,7 @@ pub use geometry::{
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use ray::Ray;
-pub use simd::{SimdLevel, SimdLevelError};
+pub use simd::{SimdLevel, SimdLevelError, Vectorized};
 pub use stats::{Level, NodeView, StructureStats};
 pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};
 pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh};

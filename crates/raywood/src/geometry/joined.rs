@@ -65,6 +65,7 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    #[inline(always)]
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         match self.in_second(hit.primitive) {
             None => self.first.surface_point(ray, hit),

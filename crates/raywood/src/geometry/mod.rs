@@ -107,6 +107,7 @@ impl<G: Geometry + ?Sized> Geometry for &G {
         (**self).intersect(primitive, ray)
     }
 
+    #[inline(always)]
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         (**self).surface_point(ray, hit)
     }

@@ -16,6 +16,7 @@ mod avx512;
 mod level;
 mod portable;
 mod vector;
+mod vectorized;
 
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ pub(crate) use arena::Arena;
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};
+pub use vectorized::Vectorized;
 
 /// Sixteen rays as rows of eight numbers each: origin, start, direction, end.
 #[inline(always)]

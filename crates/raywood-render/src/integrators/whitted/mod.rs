@@ -6,7 +6,10 @@
 //! Rays are not followed one by one but in waves of those that belong together: the primary rays of a tile, the mirrored ones of a depth, the
 //! shadow rays of a light. Structures trace such rays as packets.
 
+mod coloured;
 mod direct;
+mod lit_points;
+mod primary;
 mod queue;
 mod shade;
 mod waves;

@@ -1,9 +1,10 @@
 //! Shading: what light comes back along a ray from what it hit, and which rays follow.
 
-use raywood::{Hit, Ray, Vec3};
+use raywood::{Hit, Ray, Vec3, Vectorized};
 use raywood_scene::Rgb;
 
-use super::direct::{DirectLight, LitPoint};
+use super::direct::DirectLight;
+use super::lit_points::LitPoint;
 use super::queue::{Path, Queue};
 use crate::fresnel::{Interface, dielectric, refract, schlick};
 use crate::integrators::Frame;
@@ -24,9 +25,28 @@ pub(super) struct Shader<'a> {
     pub(super) goes_on: bool,
 }
 
+/// A wave that was traced.
+pub(super) struct ShadeWave<'a, 'b> {
+    pub(super) shader: Shader<'a>,
+    pub(super) wave: &'b Queue,
+    pub(super) hits: &'b [Option<Hit>],
+}
+
+impl Vectorized for ShadeWave<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { mut shader, wave, hits } = self;
+        for ((ray, path), hit) in wave.rays.iter().zip(&wave.paths).zip(hits) {
+            shader.shade(ray, path, hit.as_ref());
+        }
+    }
+}
+
 impl Shader<'_> {
     /// Adds the light that comes back along a ray from what it hit, and sends further rays.
-    #[inline]
+    #[inline(always)]
     pub(super) fn shade(&mut self, ray: &Ray, path: &Path, hit: Option<&Hit>) {
         let frame = self.frame;
         let Some(hit) = hit else {
@@ -67,14 +87,14 @@ impl Shader<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, path: &Path, light: Rgb) {
         self.pixels[path.pixel as usize] += light;
     }
 
     /// Adds what the surface sends out by itself and of the ambient light, and has the other lights look at it. `body` is the share that is
     /// not mirrored.
-    #[inline]
+    #[inline(always)]
     fn lights(&mut self, surface: &Surface<'_>, ray: &Ray, here: &Path, body: Rgb, origin: Vec3) {
         let material = surface.material;
         let diffuse = here.weight * (body * surface.diffuse);
@@ -96,7 +116,7 @@ impl Shader<'_> {
     }
 
     /// Follows the light that the surface mirrors, if it is worth a ray.
-    #[inline]
+    #[inline(always)]
     fn reflect(
         &mut self,
         surface: &Surface<'_>,
@@ -112,7 +132,7 @@ impl Shader<'_> {
     }
 
     /// Follows the light that the surface lets through, if it is worth a ray.
-    #[inline]
+    #[inline(always)]
     fn refract(&mut self, surface: &Surface<'_>, ray: &Ray, here: &Path, interface: Interface) {
         let share = (1.0 - interface.reflectance) * surface.material.transmission;
         let absorption = if surface.outside { surface.material.absorption } else { Rgb::ZERO };
@@ -131,7 +151,7 @@ impl Shader<'_> {
     }
 
     /// The path after one more bounce that keeps `share` of the light; `None` if that is one too many or too weak to see.
-    #[inline]
+    #[inline(always)]
     fn next(&self, here: &Path, share: Rgb, absorption: Rgb) -> Option<Path> {
         let weight = here.weight * share;
         let goes_on = self.goes_on && weight.max_element() >= self.frame.options.cutoff;
@@ -140,7 +160,7 @@ impl Shader<'_> {
 }
 
 /// The index of refraction on the ray's side over the one on the other.
-#[inline]
+#[inline(always)]
 fn eta(surface: &Surface<'_>) -> f32 {
     if surface.outside { 1.0 / surface.material.ior } else { surface.material.ior }
 }

@@ -1,34 +1,23 @@
 //! The order in which the rays of a tile are traced.
 
-use raywood::Hit;
-use raywood_scene::Rgb;
+use raywood::{Hit, SimdLevel};
 
 use super::direct::DirectLight;
-use super::queue::{Path, Queue, WAVE, Waiting};
-use super::shade::Shader;
+use super::primary::{PrimaryRays, SendPrimary};
+use super::queue::{Queue, WAVE, Waiting};
+use super::shade::{ShadeWave, Shader};
 use crate::integrators::Frame;
-use crate::sampling::PixelSamples;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
 
 /// The memory that a tile needs.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// The pixels of the tile, those of a block together.
-    pixels: Vec<Pixel>,
+    primary: PrimaryRays,
     waiting: Waiting,
     wave: Queue,
     hits: Vec<Option<Hit>>,
     direct: DirectLight,
-}
-
-/// A pixel and where its primary rays pass.
-struct Pixel {
-    /// Its number in the tile.
-    number: u32,
-    /// Its column and row in the image.
-    place: [u32; 2],
-    samples: PixelSamples,
 }
 
 /// Follows the rays of a tile, a wave of them at a time, and adds up the light that they bring.
@@ -36,6 +25,8 @@ pub(super) struct Waves<'a> {
     frame: &'a Frame<'a>,
     pixels: &'a mut TilePixels,
     counts: RayCounts,
+    /// What loops are compiled for.
+    level: SimdLevel,
     scratch: &'a mut Scratch,
 }
 
@@ -47,7 +38,8 @@ impl<'a> Waves<'a> {
     ) -> Self {
         scratch.waiting.reset(frame.options.max_depth);
         scratch.direct.reset(frame.lights.directed.len());
-        Self { frame, pixels, counts: RayCounts::default(), scratch }
+        let level = frame.scene.structure().simd_level().unwrap_or_else(SimdLevel::active);
+        Self { frame, pixels, counts: RayCounts::default(), level, scratch }
     }
 
     /// How many rays were traced.
@@ -58,12 +50,7 @@ impl<'a> Waves<'a> {
     /// Follows all rays of the tile, if nobody asks to stop.
     pub(super) fn follow_all(&mut self, tile: &Tile) {
         let samples = self.frame.options.samples;
-        self.scratch.pixels.clear();
-        self.scratch.pixels.extend(tile.pixels_in_blocks().map(|(number, [x, y])| Pixel {
-            number,
-            place: [x, y],
-            samples: PixelSamples::new(x, y, samples),
-        }));
+        self.scratch.primary.reset(tile, samples);
 
         // One ray of each pixel at a time: the more samples, the more waves, but none wider.
         for index in 0..samples {
@@ -88,14 +75,9 @@ impl<'a> Waves<'a> {
 
     /// Makes ray `index` of every pixel the next wave.
     fn send_primary(&mut self, index: u32) {
-        let Scratch { pixels, wave, .. } = &mut *self.scratch;
-        wave.clear();
-        for Pixel { number, place: [x, y], samples } in &*pixels {
-            // In air. (An eye inside glass is noticed when the ray leaves it.)
-            let path = Path { pixel: *number, weight: Rgb::ONE, absorption: Rgb::ZERO };
-            wave.push(self.frame.camera.sample_ray(*x, *y, samples, index), path);
-        }
-        self.counts.primary += pixels.len() as u64;
+        let Scratch { primary, wave, .. } = &mut *self.scratch;
+        self.counts.primary += primary.len() as u64;
+        self.level.run(SendPrimary { camera: &self.frame.camera, primary, index, wave });
     }
 
     /// Makes rays that wait the next wave and tells their depth.
@@ -110,7 +92,7 @@ impl<'a> Waves<'a> {
         hits.resize(wave.rays.len(), None);
         self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
 
-        let mut shader = Shader {
+        let shader = Shader {
             frame: self.frame,
             pixels: self.pixels,
             counts: &mut self.counts,
@@ -118,10 +100,8 @@ impl<'a> Waves<'a> {
             followers: waiting.at(depth + 1),
             goes_on: depth < self.frame.options.max_depth,
         };
-        for ((ray, path), hit) in wave.rays.iter().zip(&wave.paths).zip(hits) {
-            shader.shade(ray, path, hit.as_ref());
-        }
-        direct.send_shadow_rays(self.frame.lights);
+        self.level.run(ShadeWave { shader, wave, hits });
+        direct.send_shadow_rays(self.frame.lights, self.level);
         self.add_direct_light(FEWEST);
     }
 

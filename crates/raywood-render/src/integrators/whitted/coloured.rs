@@ -1,0 +1,89 @@
+//! Light on its way through what is transparent: shadow rays that are followed surface by surface, many at a time.
+
+use raywood::{Hit, Ray};
+use raywood_scene::Rgb;
+
+use crate::integrators::Frame;
+use crate::lights::Lights;
+use crate::shadows::{MOST_CROSSINGS, Passage, passage, ray_towards_light};
+use crate::stats::RayCounts;
+use crate::tiles::TilePixels;
+
+/// What a shadow ray brings if it arrives.
+#[derive(Clone, Copy)]
+struct Bringing {
+    /// The pixel of the tile that is lit.
+    pixel: u32,
+    /// Which light the ray goes to.
+    light: u32,
+    /// How many surfaces were crossed.
+    crossings: u32,
+    /// The light if nothing were in the way.
+    brought: Rgb,
+    /// The share that the surfaces crossed let through.
+    share: Rgb,
+}
+
+/// Shadow rays that something is in the way of, perhaps nothing but what is transparent.
+#[derive(Default)]
+pub(super) struct ColouredShadows {
+    rays: Vec<Ray>,
+    bringing: Vec<Bringing>,
+    hits: Vec<Option<Hit>>,
+}
+
+impl ColouredShadows {
+    /// Forgets all rays.
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+        self.bringing.clear();
+    }
+
+    /// How many rays wait.
+    pub(super) fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// Has a ray to a light wait, which brings so much to the pixel if nothing is in the way.
+    #[inline]
+    pub(super) fn push(&mut self, ray: Ray, light: usize, pixel: u32, brought: Rgb) {
+        self.rays.push(ray);
+        let light = light as u32;
+        self.bringing.push(Bringing { pixel, light, crossings: 0, brought, share: Rgb::ONE });
+    }
+
+    /// Takes all rays to the next surface, adds the light of those that meet none, and has those wait again that it lets through.
+    pub(super) fn advance(
+        &mut self,
+        frame: &Frame<'_>,
+        pixels: &mut TilePixels,
+        counts: &mut RayCounts,
+    ) {
+        let Self { rays, bringing, hits } = self;
+        hits.resize(rays.len(), None);
+        frame.scene.structure().intersect_batch_serial(rays, hits);
+        counts.shadow += rays.len() as u64;
+
+        let Lights { directed, .. } = frame.lights;
+        let mut left = 0;
+        for number in 0..rays.len() {
+            let Bringing { pixel, light, crossings, brought, share } = bringing[number];
+            let Some(hit) = &hits[number] else {
+                pixels[pixel as usize] += brought * share;
+                continue;
+            };
+            let passed = passage(frame.scene, &rays[number], hit);
+            let Some(Passage { share: passed, origin }) = passed else { continue };
+            let share = share * passed;
+            let crossings = crossings + 1;
+            if share.max_element() < frame.options.cutoff || crossings == MOST_CROSSINGS {
+                continue;
+            }
+            rays[left] = ray_towards_light(&directed[light as usize], origin);
+            bringing[left] = Bringing { pixel, light, crossings, brought, share };
+            left += 1;
+        }
+        rays.truncate(left);
+        bringing.truncate(left);
+    }
+}

@@ -1,0 +1,196 @@
+//! The points of a wave that lights may reach, in columns: what one light brings to all of them is computed with vectors.
+
+use raywood::{Ray, Vec3, Vectorized};
+use raywood_scene::{Light, LightKind, Rgb};
+
+use super::queue::WAVE;
+use crate::lights::{Illumination, cone_share, from_position};
+use crate::power::power;
+use crate::shading::light_cosine;
+use crate::shadows::ray_towards_light;
+
+/// A point that lights may reach.
+pub(super) struct LitPoint {
+    /// The pixel of the tile that it is seen in.
+    pub(super) pixel: u32,
+    pub(super) position: Vec3,
+    /// Where shadow rays start.
+    pub(super) origin: Vec3,
+    /// Unit normals on the viewer's side.
+    pub(super) geometric_normal: Vec3,
+    pub(super) normal: Vec3,
+    /// What light scattered in all directions, and in the highlight, counts in the pixel.
+    pub(super) diffuse: Rgb,
+    pub(super) specular: Rgb,
+    /// The exponent of the highlight, if there is one.
+    pub(super) shininess: Option<f32>,
+    /// The direction that it is seen in, unit length.
+    pub(super) view: Vec3,
+}
+
+/// A number for each point.
+type Column = [f32; WAVE];
+
+/// A vector for each point.
+type Columns = [Column; 3];
+
+const ZERO: Columns = [[0.0; WAVE]; 3];
+
+/// The points of one wave, at most.
+pub(super) struct LitPoints {
+    count: usize,
+    /// Whether some have a highlight.
+    shiny: bool,
+    pixels: [u32; WAVE],
+    positions: Columns,
+    origins: Columns,
+    geometric_normals: Columns,
+    normals: Columns,
+    diffuse: Columns,
+    specular: Columns,
+    shininess: Column,
+    views: Columns,
+}
+
+/// The shadow rays of one light: all go to one point, or in one direction.
+#[derive(Default)]
+pub(super) struct ShadowRays {
+    pub(super) rays: Vec<Ray>,
+    /// To which pixel the light adds how much if nothing is in the way.
+    pub(super) light: Vec<(u32, Rgb)>,
+}
+
+impl Default for LitPoints {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            shiny: false,
+            pixels: [0; WAVE],
+            positions: ZERO,
+            origins: ZERO,
+            geometric_normals: ZERO,
+            normals: ZERO,
+            diffuse: ZERO,
+            specular: ZERO,
+            shininess: [0.0; WAVE],
+            views: ZERO,
+        }
+    }
+}
+
+impl LitPoints {
+    /// Forgets all points.
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+        self.shiny = false;
+    }
+
+    /// Adds a point. There is room for one for each ray of a wave.
+    #[inline(always)]
+    pub(super) fn push(&mut self, point: LitPoint) {
+        let number = self.count;
+        self.pixels[number] = point.pixel;
+        set(&mut self.positions, number, point.position);
+        set(&mut self.origins, number, point.origin);
+        set(&mut self.geometric_normals, number, point.geometric_normal);
+        set(&mut self.normals, number, point.normal);
+        set(&mut self.diffuse, number, point.diffuse);
+        set(&mut self.views, number, point.view);
+        self.shiny |= point.shininess.is_some();
+        // Without a highlight any exponent will do.
+        let specular = if point.shininess.is_some() { point.specular } else { Rgb::ZERO };
+        set(&mut self.specular, number, specular);
+        self.shininess[number] = point.shininess.unwrap_or(1.0);
+        self.count += 1;
+    }
+}
+
+#[inline(always)]
+fn set(columns: &mut Columns, number: usize, v: Vec3) {
+    columns[0][number] = v.x;
+    columns[1][number] = v.y;
+    columns[2][number] = v.z;
+}
+
+#[inline(always)]
+fn get(columns: &Columns, number: usize) -> Vec3 {
+    Vec3::new(columns[0][number], columns[1][number], columns[2][number])
+}
+
+/// Sends rays from all points to a light that may reach them.
+pub(super) struct SendShadowRays<'a> {
+    pub(super) light: &'a Light,
+    pub(super) points: &'a LitPoints,
+    pub(super) shadows: &'a mut ShadowRays,
+}
+
+impl Vectorized for SendShadowRays<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        // One loop for each kind of light, so that none asks at every point which kind it is.
+        let intensity = self.light.intensity;
+        match self.light.kind {
+            LightKind::Point { position } => {
+                self.send(|point| from_position(position, point, intensity));
+            }
+            LightKind::Spot { position, direction, cos_inner, cos_outer } => self.send(|point| {
+                let at_point = from_position(position, point, intensity);
+                let share = cone_share(at_point.direction, direction, cos_inner, cos_outer);
+                Illumination {
+                    intensity: share * at_point.intensity,
+                    shines: at_point.shines & (share > 0.0),
+                    ..at_point
+                }
+            }),
+            LightKind::Directional { direction } => {
+                self.send(|_| Illumination { direction: -direction, intensity, shines: true });
+            }
+            LightKind::Ambient => {}
+        }
+    }
+}
+
+impl SendShadowRays<'_> {
+    #[inline(always)]
+    fn send(self, illuminate: impl Fn(Vec3) -> Illumination) {
+        let Self { light, points, shadows } = self;
+        let count = points.count.min(WAVE);
+
+        // What the light brings to each point: Lambert's law.
+        let mut cosines = [0.0; WAVE];
+        let mut brought = ZERO;
+        for number in 0..count {
+            let at_point = illuminate(get(&points.positions, number));
+            let normal = get(&points.normals, number);
+            let geometric_normal = get(&points.geometric_normals, number);
+            let cosine = light_cosine(at_point.direction, normal, geometric_normal);
+            cosines[number] = if at_point.shines { cosine } else { 0.0 };
+            let light = get(&points.diffuse, number) * at_point.intensity;
+            set(&mut brought, number, cosine * light);
+        }
+
+        // Blinn's highlight (1977) around the direction halfway to the eye.
+        if points.shiny {
+            for number in 0..count {
+                let at_point = illuminate(get(&points.positions, number));
+                let halfway = at_point.direction - get(&points.views, number);
+                let length = halfway.length();
+                let aligned = halfway.dot(get(&points.normals, number)) / length;
+                let aligned = if aligned > 0.0 { aligned } else { 0.0 };
+                let factor = cosines[number] * power(aligned, points.shininess[number]);
+                let light = get(&points.specular, number) * at_point.intensity;
+                let sum = get(&brought, number) + factor * light;
+                set(&mut brought, number, sum);
+            }
+        }
+
+        for number in 0..count {
+            if cosines[number] > 0.0 {
+                shadows.rays.push(ray_towards_light(light, get(&points.origins, number)));
+                shadows.light.push((points.pixels[number], get(&brought, number)));
+            }
+        }
+    }
+}
