@@ -1,6 +1,6 @@
 //! How much of a light reaches a point: the shadow ray, which what is transparent colours and weakens.
 
-use raywood::{Aabb, Hit, Ray, SurfacePoint, Vec3};
+use raywood::{Aabb, Hit, Ray, SurfacePoint, Vec3, Vectorized};
 use raywood_scene::{Light, LightKind, Rgb};
 
 use crate::PreparedScene;
@@ -11,12 +11,48 @@ use crate::prepared::SurfaceMaterial;
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 pub(crate) const MOST_CROSSINGS: u32 = 32;
 
-/// Whether what a ray hits may let light through.
-#[inline]
-pub(crate) fn light_may_pass(prepared: &PreparedScene<'_>, ray: &Ray) -> bool {
-    let d = ray.direction;
-    let reciprocals = Vec3::new(1.0 / d.x, 1.0 / d.y, 1.0 / d.z);
-    prepared.transmissive_bounds().iter().any(|bounds| may_cross(ray, reciprocals, bounds))
+/// Finds out which rays may meet something that lets light through: for each ray a number that is zero where it cannot.
+pub(crate) struct LightMayPass<'a> {
+    /// Boxes outside of which nothing lets light through.
+    pub(crate) bounds: &'a [Aabb],
+    pub(crate) rays: &'a [Ray],
+    /// As many as there are rays.
+    pub(crate) answers: &'a mut [u32],
+}
+
+impl Vectorized for LightMayPass<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        const GROUP: usize = 16;
+        for (rays, answers) in self.rays.chunks(GROUP).zip(self.answers.chunks_mut(GROUP)) {
+            // Sixteen rays in columns.
+            let mut ends = [[0.0; GROUP]; 2];
+            let mut origins = [[0.0; GROUP]; 3];
+            let mut reciprocals = [[0.0; GROUP]; 3];
+            for (lane, ray) in rays.iter().enumerate() {
+                [ends[0][lane], ends[1][lane]] = [ray.t_min, ray.t_max];
+                let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+                for axis in 0..3 {
+                    origins[axis][lane] = origin[axis];
+                    reciprocals[axis][lane] = 1.0 / direction[axis];
+                }
+            }
+
+            let mut may_pass = [0; GROUP];
+            for bounds in self.bounds {
+                for lane in 0..GROUP {
+                    let [origin, reciprocal] = [&origins, &reciprocals].map(|columns| {
+                        Vec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
+                    });
+                    let interval = [ends[0][lane], ends[1][lane]];
+                    may_pass[lane] |= u32::from(may_cross(origin, reciprocal, interval, bounds));
+                }
+            }
+            answers.copy_from_slice(&may_pass[..answers.len()]);
+        }
+    }
 }
 
 /// What a shadow ray meets that lets light through.
@@ -101,17 +137,17 @@ pub(crate) fn transmittance(absorption: Rgb, length: f32) -> Rgb {
 }
 
 /// Whether a ray may meet a box; false only if it cannot (Kay and Kajiya 1986, with a margin for rounding).
-#[inline]
-fn may_cross(ray: &Ray, reciprocals: Vec3, bounds: &Aabb) -> bool {
-    let (mut near, mut far) = (ray.t_min, ray.t_max);
-    let reach = (bounds.min - ray.origin).abs().max((bounds.max - ray.origin).abs());
-    let margin = 16.0 * f32::EPSILON * reach.max_element();
-    for axis in 0..3 {
-        let a = (bounds.min[axis] - margin - ray.origin[axis]) * reciprocals[axis];
-        let b = (bounds.max[axis] + margin - ray.origin[axis]) * reciprocals[axis];
-        // NaN (in the plane of a face, along it) leaves the interval as it is.
-        near = near.max(a.min(b));
-        far = far.min(a.max(b));
-    }
+#[inline(always)]
+fn may_cross(origin: Vec3, reciprocal: Vec3, [near, far]: [f32; 2], bounds: &Aabb) -> bool {
+    let low = bounds.min - origin;
+    let high = bounds.max - origin;
+    let reach = low.abs().max(high.abs());
+    let margin = 16.0 * f32::EPSILON * reach.x.max(reach.y).max(reach.z);
+    let margin = Vec3::splat(margin);
+    let a = (low - margin) * reciprocal;
+    let b = (high + margin) * reciprocal;
+    // NaN (in the plane of a face, along it) leaves the interval as it is.
+    let near = near.max(a.x.min(b.x)).max(a.y.min(b.y)).max(a.z.min(b.z));
+    let far = far.min(a.x.max(b.x)).min(a.y.max(b.y)).min(a.z.max(b.z));
     near <= far
 }

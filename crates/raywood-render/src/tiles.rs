@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::stats::RayCounts;
 
 /// The edge of a tile in pixels.
-pub(crate) const TILE_SIZE: u32 = 16;
+pub(crate) const TILE_SIZE: u32 = 32;
 
 /// A rectangle of pixels: a whole square, or what is left of one at the image's right and lower edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,20 +23,35 @@ pub(crate) struct Tile {
     pub(crate) height: u32,
 }
 
-/// The edge of the blocks of pixels that a tile is divided into.
+/// The edge of the squares of pixels that a tile is divided into: one ray of each pixel is a wave.
+pub(crate) const SQUARE_SIZE: u32 = 16;
+
+/// The edge of the blocks of pixels that a square is divided into.
 const BLOCK_SIZE: u32 = 4;
 
 impl Tile {
-    /// Its pixels, block after block of 4 x 4, so that any sixteen that follow each other are close together: their numbers in the tile, and
-    /// their columns and rows in the image.
-    pub(crate) fn pixels_in_blocks(&self) -> impl Iterator<Item = (u32, [u32; 2])> {
-        let Self { x, y, width, height } = *self;
-        let blocks = |size: u32| (0..size).step_by(BLOCK_SIZE as usize);
-        blocks(height)
-            .flat_map(move |row| blocks(width).map(move |column| [column, row]))
+    /// The upper left corners of its squares: columns and rows in the tile.
+    pub(crate) fn squares(&self) -> impl Iterator<Item = [u32; 2]> {
+        let squares = |size: u32| (0..size).step_by(SQUARE_SIZE as usize);
+        let columns = self.width;
+        squares(self.height).flat_map(move |row| squares(columns).map(move |column| [column, row]))
+    }
+
+    /// The pixels of a square, block after block of 4 x 4, so that any sixteen that follow each other are close together: their numbers in the
+    /// tile, and their columns and rows in the image.
+    pub(crate) fn pixels_in_blocks(
+        &self,
+        [left, top]: [u32; 2],
+    ) -> impl Iterator<Item = (u32, [u32; 2])> {
+        let Self { x, y, .. } = *self;
+        let right = self.width.min(left + SQUARE_SIZE);
+        let bottom = self.height.min(top + SQUARE_SIZE);
+        let blocks = |range: std::ops::Range<u32>| range.step_by(BLOCK_SIZE as usize);
+        blocks(top..bottom)
+            .flat_map(move |row| blocks(left..right).map(move |column| [column, row]))
             .flat_map(move |[column, row]| {
-                let rows = row..(row + BLOCK_SIZE).min(height);
-                let columns = column..(column + BLOCK_SIZE).min(width);
+                let rows = row..(row + BLOCK_SIZE).min(bottom);
+                let columns = column..(column + BLOCK_SIZE).min(right);
                 rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
             })
             .map(move |[column, row]| (row * TILE_SIZE + column, [x + column, y + row]))
@@ -155,9 +170,27 @@ mod tests {
     }
 
     #[test]
+    fn squares_cover_each_pixel_of_a_tile_once() {
+        for (width, height) in [(1, 1), (32, 32), (17, 32), (16, 7), (5, 30)] {
+            let tile = Tile { x: 64, y: 96, width, height };
+            let mut covered = [0; (TILE_SIZE * TILE_SIZE) as usize];
+            for square in tile.squares() {
+                for (number, [x, y]) in tile.pixels_in_blocks(square) {
+                    assert_eq!(number, (y - 96) * TILE_SIZE + x - 64);
+                    assert!(x - 64 < width && y - 96 < height);
+                    covered[number as usize] += 1;
+                }
+            }
+            assert!(covered.iter().all(|&count| count <= 1));
+            assert_eq!(covered.iter().sum::<u32>(), width * height, "{width} x {height}");
+        }
+    }
+
+    #[test]
     fn the_order_is_mortons() {
-        let order: Vec<_> =
-            tiles_in_morton_order(64, 64).iter().map(|t| (t.x / 16, t.y / 16)).collect();
+        let edge = TILE_SIZE;
+        let tiles = tiles_in_morton_order(4 * edge, 4 * edge);
+        let order: Vec<_> = tiles.iter().map(|t| (t.x / edge, t.y / edge)).collect();
         assert_eq!(order[..8], [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (3, 0), (2, 1), (3, 1)]);
         assert_eq!(order[8], (0, 2));
     }

@@ -7,7 +7,7 @@ use super::lit_points::{LitPoint, LitPoints, SendShadowRays, ShadowRays};
 use super::queue::WAVE;
 use crate::integrators::Frame;
 use crate::lights::Lights;
-use crate::shadows::light_may_pass;
+use crate::shadows::LightMayPass;
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
 
@@ -18,6 +18,8 @@ pub(super) struct DirectLight {
     /// For each light.
     shadows: Vec<ShadowRays>,
     blocked: Vec<bool>,
+    /// Of the rays of a light those that may meet something transparent: not zero.
+    may_pass: Vec<u32>,
     coloured: ColouredShadows,
 }
 
@@ -53,32 +55,44 @@ impl DirectLight {
         &mut self,
         frame: &Frame<'_>,
         fewest: usize,
+        level: SimdLevel,
         pixels: &mut TilePixels,
         counts: &mut RayCounts,
     ) {
-        let may_colour = !frame.options.opaque_shadows;
+        let opaque = frame.options.opaque_shadows;
+        let bounds = if opaque { &[] } else { frame.scene.transmissive_bounds() };
         let lights = frame.lights.directed.len();
         for (number, shadows) in self.shadows[..lights].iter_mut().enumerate() {
-            let ShadowRays { rays, light: brought } = shadows;
-            if rays.len() < fewest {
+            if shadows.rays.len() < fewest {
                 continue;
             }
+            // Whole packets, unless these are the last.
+            let count = shadows.rays.len();
+            let count = if fewest > 1 { count - count % WAVE } else { count };
+            let (rays, brought) = (&shadows.rays[..count], &shadows.light[..count]);
             self.blocked.resize(rays.len(), false);
             frame.scene.structure().occluded_batch_serial(rays, &mut self.blocked);
-            for ((ray, (pixel, brought)), blocked) in rays.iter().zip(&*brought).zip(&self.blocked)
+            self.may_pass.clear();
+            self.may_pass.resize(rays.len(), 0);
+            if !bounds.is_empty() {
+                level.run(LightMayPass { bounds, rays, answers: &mut self.may_pass });
+            }
+            let answers = self.blocked.iter().zip(&self.may_pass);
+            for ((ray, (pixel, brought)), (blocked, may_pass)) in
+                rays.iter().zip(brought).zip(answers)
             {
                 if !blocked {
                     counts.shadow += 1;
                     pixels[*pixel as usize] += *brought;
-                } else if may_colour && light_may_pass(frame.scene, ray) {
+                } else if *may_pass != 0 {
                     // Something transparent may be all that is in the way.
                     self.coloured.push(*ray, number, *pixel, *brought);
                 } else {
                     counts.shadow += 1;
                 }
             }
-            rays.clear();
-            brought.clear();
+            shadows.rays.drain(..count);
+            shadows.light.drain(..count);
         }
 
         // Only many rays at a time keep enough of them in flight.

@@ -8,7 +8,7 @@ use crate::camera_rays::CameraRays;
 use crate::sampling::PixelSamples;
 use crate::tiles::Tile;
 
-/// The pixels of a tile, those of a block together.
+/// The pixels of a square of a tile, those of a block together.
 #[derive(Default)]
 pub(super) struct PrimaryRays {
     pixels: Vec<Pixel>,
@@ -24,17 +24,17 @@ struct Pixel {
 }
 
 impl PrimaryRays {
-    /// Takes the pixels of a tile.
-    pub(super) fn reset(&mut self, tile: &Tile, samples: u32) {
+    /// Takes the pixels of a square of a tile.
+    pub(super) fn reset(&mut self, tile: &Tile, square: [u32; 2], samples: u32) {
         self.pixels.clear();
-        self.pixels.extend(tile.pixels_in_blocks().map(|(number, [x, y])| Pixel {
+        self.pixels.extend(tile.pixels_in_blocks(square).map(|(number, [x, y])| Pixel {
             number,
             place: [x, y],
             samples: PixelSamples::new(x, y, samples),
         }));
     }
 
-    /// How many pixels the tile has.
+    /// How many pixels these are.
     pub(super) fn len(&self) -> usize {
         self.pixels.len()
     }

@@ -50,17 +50,18 @@ impl<'a> Waves<'a> {
     /// Follows all rays of the tile, if nobody asks to stop.
     pub(super) fn follow_all(&mut self, tile: &Tile) {
         let samples = self.frame.options.samples;
-        self.scratch.primary.reset(tile, samples);
-
-        // One ray of each pixel at a time: the more samples, the more waves, but none wider.
-        for index in 0..samples {
-            self.send_primary(index);
-            self.trace_wave(0);
-            while let Some(depth) = self.scratch.waiting.take_full(&mut self.scratch.wave) {
-                self.trace_wave(depth);
-            }
-            if self.frame.progress.is_cancelled() {
-                return;
+        for square in tile.squares() {
+            // One ray of each pixel at a time: the more samples, the more waves, but none wider.
+            self.scratch.primary.reset(tile, square, samples);
+            for index in 0..samples {
+                self.send_primary(index);
+                self.trace_wave(0);
+                while let Some(depth) = self.scratch.waiting.take_full(&mut self.scratch.wave) {
+                    self.trace_wave(depth);
+                }
+                if self.frame.progress.is_cancelled() {
+                    return;
+                }
             }
         }
         while let Some(depth) = self.take_next() {
@@ -107,9 +108,9 @@ impl<'a> Waves<'a> {
 
     /// Adds the light of those lights that at least `fewest` shadow rays wait for.
     fn add_direct_light(&mut self, fewest: usize) {
-        self.scratch.direct.add(self.frame, fewest, self.pixels, &mut self.counts);
+        self.scratch.direct.add(self.frame, fewest, self.level, self.pixels, &mut self.counts);
     }
 }
 
-/// Fewer shadow rays of a light wait for others.
-const FEWEST: usize = WAVE / 4;
+/// Fewer shadow rays of a light wait for others, of any part of the tile.
+const FEWEST: usize = WAVE;
