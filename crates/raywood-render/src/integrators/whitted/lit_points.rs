@@ -161,33 +161,33 @@ impl SendShadowRays<'_> {
         // What the light brings to each point: Lambert's law.
         let mut cosines = [0.0; WAVE];
         let mut brought = ZERO;
-        for number in 0..count {
+        for (number, cosine_there) in cosines[..count].iter_mut().enumerate() {
             let at_point = illuminate(get(&points.positions, number));
             let normal = get(&points.normals, number);
             let geometric_normal = get(&points.geometric_normals, number);
             let cosine = light_cosine(at_point.direction, normal, geometric_normal);
-            cosines[number] = if at_point.shines { cosine } else { 0.0 };
+            *cosine_there = if at_point.shines { cosine } else { 0.0 };
             let light = get(&points.diffuse, number) * at_point.intensity;
             set(&mut brought, number, cosine * light);
         }
 
         // Blinn's highlight (1977) around the direction halfway to the eye.
         if points.shiny {
-            for number in 0..count {
+            for (number, cosine) in cosines[..count].iter().enumerate() {
                 let at_point = illuminate(get(&points.positions, number));
                 let halfway = at_point.direction - get(&points.views, number);
                 let length = halfway.length();
                 let aligned = halfway.dot(get(&points.normals, number)) / length;
                 let aligned = if aligned > 0.0 { aligned } else { 0.0 };
-                let factor = cosines[number] * power(aligned, points.shininess[number]);
+                let factor = *cosine * power(aligned, points.shininess[number]);
                 let light = get(&points.specular, number) * at_point.intensity;
                 let sum = get(&brought, number) + factor * light;
                 set(&mut brought, number, sum);
             }
         }
 
-        for number in 0..count {
-            if cosines[number] > 0.0 {
+        for (number, cosine) in cosines[..count].iter().enumerate() {
+            if *cosine > 0.0 {
                 shadows.rays.push(ray_towards_light(light, get(&points.origins, number)));
                 shadows.light.push((points.pixels[number], get(&brought, number)));
             }
