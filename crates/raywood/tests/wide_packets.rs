@@ -317,3 +317,34 @@ impl BoundsOfAll for TriangleMesh {
         })
     }
 }
+
+#[test]
+fn shadow_rays_that_start_on_or_just_beside_surfaces_answer_as_single_rays_do() {
+    let mut rng = Rng::new(11);
+    for (mesh, scale) in [
+        (shapes::uv_sphere(24, Vec3::new(30.0, -20.0, 10.0), 1.0), 1.0),
+        (shapes::soup(500, 0.7, 12), 1.0),
+    ] {
+        let mut structure = build(&mesh);
+        let center = mesh.bounds_of_all().center();
+        let light = center + scale * Vec3::new(1.5, 2.5, 2.0);
+        let eye = center + scale * Vec3::new(-2.0, 2.2, 1.7);
+        let mut points = Vec::new();
+        for ray in pinhole(eye, center, 0.6, 9000) {
+            let Some(hit) = structure.intersect(&ray) else { continue };
+            let point = structure.surface_point(&ray, &hit);
+            let raw = ray.at(hit.t);
+            let ulp = f32::EPSILON * raw.abs().max_element();
+            points.push(match points.len() % 4 {
+                0 => point.origin_towards(light - point.position),
+                1 => point.origin_towards(point.position - light),
+                2 => raw,
+                _ => raw + 2.0 * ulp * rng.in_cube(),
+            });
+        }
+        assert!(points.len() > 1000, "{}", points.len());
+        check_point(&mut structure, light, &points, "from surfaces");
+        let rays: Vec<_> = points.iter().map(|point| Ray::between(*point, light)).collect();
+        check(&mut structure, &rays, "from surfaces");
+    }
+}

@@ -8,6 +8,7 @@
 mod frame;
 mod gather;
 mod groups;
+mod leaving;
 mod sort;
 mod triangles;
 
@@ -21,6 +22,7 @@ use crate::traverse::nearest::hit as hit_one;
 use crate::{Geometry, Hit, HitColumns, PreparedRay};
 use frame::Frame;
 use groups::Groups;
+use leaving::Plane;
 use triangles::{GREATEST_VOLUME, Triangles};
 
 /// How many rays a packet has at most.
@@ -429,12 +431,17 @@ impl Packet {
         let block = piece.tree.block(leaf);
         let is_triangle =
             !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
+        let plane = (ANY && is_triangle).then(|| Plane::of(block.corners(lane)));
         for place in (0..GROUP).filter(|place| doubtful >> place & 1 == 1) {
             if self.nearest[group][place] == f32::INFINITY {
                 continue;
             }
             let number = usize::from(self.numbers[group][place]);
-            let Some(ray) = PreparedRay::new(&piece.rays.ray(number)) else {
+            let ray = piece.rays.ray(number);
+            if plane.as_ref().is_some_and(|plane| plane.is_left_by(&ray)) {
+                continue;
+            }
+            let Some(ray) = PreparedRay::new(&ray) else {
                 continue;
             };
             let hit = match is_triangle {
