@@ -14,16 +14,38 @@ const GRAIN: usize = 4096;
 #[cfg(feature = "rayon")]
 const PACKET: usize = 256;
 
-/// Runs both closures, in parallel if `parallel` holds.
-pub(crate) fn join_if(parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+/// Runs both closures, in parallel if `parallel` holds, and returns what they return.
+pub(crate) fn join_if<A: Send, B: Send>(
+    parallel: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
     #[cfg(feature = "rayon")]
     if parallel {
-        rayon::join(a, b);
-        return;
+        return rayon::join(a, b);
     }
     let _ = parallel;
-    a();
-    b();
+    (a(), b())
+}
+
+/// The results of `f` for each piece of so many items, in order.
+pub(crate) fn map_pieces<T: Sync, A: Send>(
+    items: &[T],
+    piece: usize,
+    f: impl Fn(&[T]) -> A + Send + Sync,
+) -> Vec<A> {
+    #[cfg(feature = "rayon")]
+    return items.par_chunks(piece).map(f).collect();
+    #[cfg(not(feature = "rayon"))]
+    items.chunks(piece).map(f).collect()
+}
+
+/// The results of `f` for a few large tasks, in order.
+pub(crate) fn map_tasks<T: Send, A: Send>(tasks: Vec<T>, f: impl Fn(T) -> A + Send + Sync) -> Vec<A> {
+    #[cfg(feature = "rayon")]
+    return tasks.into_par_iter().map(f).collect();
+    #[cfg(not(feature = "rayon"))]
+    tasks.into_iter().map(f).collect()
 }
 
 /// The results of `f` for 0 to `n-1`, in order.

@@ -35,12 +35,12 @@ impl Bvh2 {
         geometry: &G,
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        let bounds = driver::primitive_bounds(geometry)?;
+        let primitives = driver::primitives(geometry)?;
         let tree = match builder {
-            Builder::Midpoint => driver::build(&bounds, &Midpoint::new(options)),
-            Builder::Median => driver::build(&bounds, &Median::new(options)),
-            Builder::SahSweep => driver::build(&bounds, &SweepSah::new(options)),
-            Builder::SahBinned => driver::build(&bounds, &BinnedSah::new(options)),
+            Builder::Midpoint => driver::build(primitives, &Midpoint::new(options)),
+            Builder::Median => driver::build(primitives, &Median::new(options)),
+            Builder::SahSweep => driver::build(primitives, &SweepSah::new(options)),
+            Builder::SahBinned => driver::build(primitives, &BinnedSah::new(options)),
         };
         Ok(reinsertion::optimize(tree, options))
     }

@@ -1,209 +1,324 @@
-//! The recursion that every top-down builder shares: in place like quicksort, over an array of primitive numbers that
-//! is permuted while the primitives themselves stay where they are.
+//! The recursion that every top-down builder shares: in place like quicksort, over an array of boxes with numbers.
 
-use super::PackedAabb;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::{PackedAabb, Primitive};
 use crate::structures::{Bvh2, MAX_DEPTH, Node};
-use crate::{Aabb, BuildError, Geometry};
+use crate::{Aabb, BuildError, Geometry, parallel};
 
 /// Sets larger than this build their two halves in parallel.
-const PARALLEL_SUBTREES: usize = 2048;
+const PARALLEL_SUBTREES: usize = 4096;
+
+/// Sets larger than this may be divided in parallel, which takes room for as many primitives again.
+pub(super) const LARGE_SET: usize = 1 << 15;
 
 /// Chooses how a set of primitives is divided: the part in which top-down builders differ.
 pub(crate) trait Splitter: Sync {
-    /// Permutes `indices` so that the left child's primitives come first and tells how many these are and the bounds of
-    /// both children, or says by `None` that the set should be a leaf.
+    /// Whether it makes use of [`Set::spare`].
+    const USES_SPARE: bool = false;
+
+    /// Permutes the set so that the left child's primitives come first and tells how many these are and what is around both children, or says by
+    /// `None` that the set should be a leaf.
     ///
     /// The answer must depend on the arguments alone, never on timing or threads.
-    fn split(
-        &self,
-        bounds: &[PackedAabb],
-        indices: &mut [u32],
-        node_bounds: &PackedAabb,
-    ) -> Option<Split>;
+    fn split(&self, set: &mut Set<'_>) -> Option<Split>;
+}
+
+/// Some primitives, to be divided: at least two.
+pub(crate) struct Set<'a> {
+    pub(super) primitives: &'a mut [Primitive],
+    /// Room for as many primitives, for those who would rather copy them than swap; empty for sets up to [`LARGE_SET`].
+    pub(super) spare: &'a mut [Primitive],
+    /// What is around them.
+    pub(super) around: Around,
+}
+
+/// What is around some primitives.
+#[derive(Clone, Copy)]
+pub(crate) struct Around {
+    /// The box around their boxes.
+    pub(super) bounds: PackedAabb,
+    /// The box around the centres of these.
+    pub(super) centers: PackedAabb,
+}
+
+impl Around {
+    const NOTHING: Self = Self { bounds: PackedAabb::EMPTY, centers: PackedAabb::EMPTY };
+
+    fn include(&mut self, primitive: &Primitive) {
+        self.bounds.grow(primitive.bounds());
+        self.centers = self.centers.including(primitive.center());
+    }
+
+    fn grow(&mut self, other: &Self) {
+        self.bounds.grow(&other.bounds);
+        self.centers.grow(&other.centers);
+    }
+
+    fn of(primitives: &[Primitive]) -> Self {
+        parallel::fold(primitives, Self::NOTHING, Self::include, Self::grow)
+    }
 }
 
 /// A set of primitives divided in two.
 pub(crate) struct Split {
     /// How many primitives go left; neither none nor all.
-    pub(crate) left_count: usize,
-    /// The box around them.
-    pub(crate) left: PackedAabb,
-    /// The box around the others.
-    pub(crate) right: PackedAabb,
+    pub(super) left_count: usize,
+    /// What is around them.
+    pub(super) left: Around,
+    /// What is around the others.
+    pub(super) right: Around,
+    /// Whether the set in its new order lies in [`Set::spare`].
+    pub(super) in_spare: bool,
 }
 
 impl Split {
     /// The set divided as it stands, its first `left_count` primitives to the left.
-    pub(super) fn at(bounds: &[PackedAabb], indices: &[u32], left_count: usize) -> Self {
-        let (left, right) = indices.split_at(left_count);
-        let around = |part: &[u32]| {
-            part.iter().fold(PackedAabb::EMPTY, |all, &i| all.union(bounds[i as usize]))
-        };
-        Self { left_count, left: around(left), right: around(right) }
+    pub(super) fn at(primitives: &[Primitive], left_count: usize) -> Self {
+        let (left, right) = primitives.split_at(left_count);
+        Self { left_count, left: Around::of(left), right: Around::of(right), in_spare: false }
     }
 }
 
 /// The bounds of every primitive, checked.
 pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<PackedAabb>, BuildError> {
+    map_bounds(geometry, |_, bounds| bounds)
+}
+
+/// Every primitive, its bounds checked.
+pub(super) fn primitives<G: Geometry>(geometry: &G) -> Result<Vec<Primitive>, BuildError> {
+    map_bounds(geometry, Primitive::new)
+}
+
+/// `f` of every primitive's number and bounds, which are checked.
+fn map_bounds<G: Geometry, T: Send>(
+    geometry: &G,
+    f: impl Fn(u32, PackedAabb) -> T + Send + Sync,
+) -> Result<Vec<T>, BuildError> {
     let primitives = geometry.len();
     if primitives > BuildError::MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { primitives });
     }
-    let is_bad = |bounds: &Aabb| bounds.is_empty() || !bounds.is_finite();
-    let bounds = crate::parallel::map(primitives, |primitive| {
+    let first_bad = AtomicUsize::new(usize::MAX);
+    let mapped = parallel::map(primitives, |primitive| {
         let bounds = geometry.bounds(primitive as u32);
-        if is_bad(&bounds) {
-            Err(BuildError::BadBounds { primitive: primitive as u32, bounds })
-        } else {
-            Ok(bounds.into())
+        if bounds.is_empty() || !bounds.is_finite() {
+            first_bad.fetch_min(primitive, Ordering::Relaxed);
         }
+        f(primitive as u32, bounds.into())
     });
-    bounds.into_iter().collect()
-}
-
-/// Builds the tree over primitives with the given (checked) bounds. The same for any number of threads.
-pub(crate) fn build<S: Splitter>(bounds: &[PackedAabb], splitter: &S) -> Bvh2 {
-    let n = bounds.len();
-    let mut indices: Vec<u32> = (0..n as u32).collect();
-    if n == 0 {
-        return Bvh2::from_parts(Vec::new(), indices);
+    match first_bad.into_inner() {
+        usize::MAX => Ok(mapped),
+        primitive => {
+            let primitive = primitive as u32;
+            Err(BuildError::BadBounds { primitive, bounds: geometry.bounds(primitive) })
+        }
     }
-
-    // A set of n primitives has at most 2n-1 nodes. Each subtree gets its own stretch of the pool of that size, so that
-    // where a node lies follows from the counts and not from which thread came first.
-    let root_bounds =
-        crate::parallel::fold(bounds, PackedAabb::EMPTY, PackedAabb::grow, PackedAabb::grow);
-    let mut pool = vec![Node::leaf(root_bounds.into(), 0, n as u32); 2 * n - 1];
-    let (root, descendants) = pool.split_at_mut(1);
-    subdivide(
-        bounds,
-        splitter,
-        &mut root[0],
-        Subtree { descendants, first_node: 1, indices: &mut indices, first: 0 },
-        1,
-    );
-    Bvh2::from_parts(close_gaps(&pool), indices)
 }
 
-/// What belongs to one subtree while it is built.
-struct Subtree<'a> {
-    /// Room for all nodes below its root.
-    descendants: &'a mut [Node],
-    /// The number of the first of them in the pool.
-    first_node: usize,
-    /// The numbers of its primitives.
+/// Builds the tree over (checked) primitives, numbered from 0. The same for any number of threads.
+pub(super) fn build<S: Splitter>(mut primitives: Vec<Primitive>, splitter: &S) -> Bvh2 {
+    let n = primitives.len();
+    let Some(&some) = primitives.first() else {
+        return Bvh2::from_parts(Vec::new(), Vec::new());
+    };
+    let spare = if S::USES_SPARE && n > LARGE_SET { n } else { 0 };
+    let mut spare = parallel::map(spare, |_| some);
+    let mut indices = vec![0; n];
+    let around = Around::of(&primitives);
+    let set = Set { primitives: &mut primitives, spare: &mut spare, around };
+    let tree = grow(splitter, Place { set, indices: &mut indices, first: 0, depth: 1 });
+    drop((primitives, spare));
+
+    let root = Node::leaf(around.bounds.into(), 0, n as u32);
+    let mut nodes = vec![root; tree.len()];
+    let (root, descendants) = nodes.split_at_mut(1);
+    tree.copy_to(&mut root[0], descendants, 1);
+    Bvh2::from_parts(nodes, indices)
+}
+
+/// What a subtree is built from.
+struct Place<'a> {
+    set: Set<'a>,
+    /// Where the numbers of its primitives go in the end.
     indices: &'a mut [u32],
     /// Where these start in the array of all.
     first: usize,
+    /// The level of its root, from 1.
+    depth: usize,
 }
 
-/// Divides `node`, a leaf over all of the subtree's primitives, as long as the splitter wants to.
-fn subdivide<S: Splitter>(
-    bounds: &[PackedAabb],
-    splitter: &S,
-    node: &mut Node,
-    subtree: Subtree<'_>,
-    depth: usize,
-) {
-    let Subtree { descendants, first_node, indices, first } = subtree;
-    let count = indices.len();
-    if count == 1 {
-        return;
+/// A subtree that was built: small ones in one piece by one thread, so that nobody has to know beforehand where nodes will lie.
+enum Subtree {
+    /// All nodes depth first, pair by pair, the root first; numbers of nodes count from it.
+    Piece(Vec<Node>),
+    /// Two subtrees and the box around both.
+    Pair(PackedAabb, Box<[Self; 2]>),
+}
+
+/// Builds a subtree, in parallel if it is large.
+fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
+    let Place { mut set, indices, first, depth } = place;
+    let count = set.primitives.len();
+    if count <= PARALLEL_SUBTREES {
+        let mut nodes = Vec::with_capacity(count);
+        nodes.push(Node::leaf(set.around.bounds.into(), first as u32, count as u32));
+        subdivide(splitter, set.primitives, &set.around, Reached { number: 0, first, depth }, &mut nodes);
+        write_numbers(set.primitives, indices);
+        return Subtree::Piece(nodes);
     }
-
-    // Keep the depth within the traversal's stack: from here on only halving can.
-    let halvings = count.next_power_of_two().trailing_zeros() as usize;
-    let split = if depth + halvings >= MAX_DEPTH {
-        Some(split_at_median(bounds, indices))
-    } else {
-        splitter.split(bounds, indices, &node.bounds().into())
+    let bounds = set.around.bounds;
+    let Some(Split { left_count, left, right, in_spare }) = split(splitter, &mut set, depth) else {
+        write_numbers(set.primitives, indices);
+        let leaf = Node::leaf(bounds.into(), first as u32, count as u32);
+        return Subtree::Piece(vec![leaf]);
     };
-    let Some(Split { left_count, left, right }) = split else { return };
-    debug_assert!(0 < left_count && left_count < count);
 
-    // The children lie side by side at the front of the subtree's room, the left one's descendants follow, then the right
-    // one's.
-    *node = Node::interior(node.bounds(), first_node as u32);
-    let (children, rest) = descendants.split_at_mut(2);
-    let (left_node, right_node) = children.split_at_mut(1);
-    left_node[0] = Node::leaf(left.into(), first as u32, left_count as u32);
-    right_node[0] =
-        Node::leaf(right.into(), (first + left_count) as u32, (count - left_count) as u32);
-    let (left_room, right_room) = rest.split_at_mut(2 * left_count - 2);
+    let Set { primitives, spare, .. } = set;
+    let (primitives, spare) = if in_spare { (spare, primitives) } else { (primitives, spare) };
+    let (left_primitives, right_primitives) = primitives.split_at_mut(left_count);
+    let (left_spare, right_spare) = spare.split_at_mut(left_count.min(spare.len()));
     let (left_indices, right_indices) = indices.split_at_mut(left_count);
-    let below_left = Subtree {
-        descendants: left_room,
-        first_node: first_node + 2,
+    let depth = depth + 1;
+    let below_left = Place {
+        set: Set { primitives: left_primitives, spare: room(left_spare), around: left },
         indices: left_indices,
         first,
+        depth,
     };
-    let below_right = Subtree {
-        descendants: right_room,
-        first_node: first_node + 2 * left_count,
+    let below_right = Place {
+        set: Set { primitives: right_primitives, spare: room(right_spare), around: right },
         indices: right_indices,
         first: first + left_count,
+        depth,
     };
-    crate::parallel::join_if(
-        count > PARALLEL_SUBTREES,
-        || subdivide(bounds, splitter, &mut left_node[0], below_left, depth + 1),
-        || subdivide(bounds, splitter, &mut right_node[0], below_right, depth + 1),
-    );
+    let children =
+        parallel::join_if(true, || grow(splitter, below_left), || grow(splitter, below_right));
+    Subtree::Pair(bounds, Box::new(children.into()))
+}
+
+/// Divides a set as the splitter wants to, but in the middle where the tree might else become too deep.
+fn split<S: Splitter>(splitter: &S, set: &mut Set<'_>, depth: usize) -> Option<Split> {
+    // Keep the depth within the traversal's stack: from here on only halving can.
+    let halvings = set.primitives.len().next_power_of_two().trailing_zeros() as usize;
+    if depth + halvings >= MAX_DEPTH { Some(split_at_median(set)) } else { splitter.split(set) }
+}
+
+/// The spare room of a set, which small sets do without.
+fn room(spare: &mut [Primitive]) -> &mut [Primitive] {
+    if spare.len() > LARGE_SET { spare } else { &mut [] }
+}
+
+/// Writes down the order of primitives.
+fn write_numbers(primitives: &[Primitive], indices: &mut [u32]) {
+    for (primitive, index) in primitives.iter().zip(indices) {
+        *index = primitive.number();
+    }
+}
+
+/// Where the recursion has come to.
+struct Reached {
+    /// The number of the set's node in the piece.
+    number: usize,
+    /// Where the set's primitives start in the array of all.
+    first: usize,
+    /// The node's level, from 1.
+    depth: usize,
+}
+
+/// Divides the last node but those to its right, a leaf over all of the set, as long as the splitter wants to.
+fn subdivide<S: Splitter>(
+    splitter: &S,
+    primitives: &mut [Primitive],
+    around: &Around,
+    Reached { number, first, depth }: Reached,
+    nodes: &mut Vec<Node>,
+) {
+    if primitives.len() == 1 {
+        return;
+    }
+    let mut set = Set { primitives, spare: &mut [], around: *around };
+    let Some(Split { left_count, left, right, .. }) = split(splitter, &mut set, depth) else {
+        return;
+    };
+    let (left_primitives, right_primitives) = set.primitives.split_at_mut(left_count);
+    debug_assert!(!left_primitives.is_empty() && !right_primitives.is_empty());
+
+    // The children lie side by side, the left one's descendants follow, then the right one's.
+    let child = nodes.len();
+    let middle = first + left_count;
+    nodes[number] = Node::interior(around.bounds.into(), child as u32);
+    nodes.push(Node::leaf(left.bounds.into(), first as u32, left_count as u32));
+    let right_count = right_primitives.len() as u32;
+    nodes.push(Node::leaf(right.bounds.into(), middle as u32, right_count));
+    let depth = depth + 1;
+    let reached = Reached { number: child, first, depth };
+    subdivide(splitter, left_primitives, &left, reached, nodes);
+    let reached = Reached { number: child + 1, first: middle, depth };
+    subdivide(splitter, right_primitives, &right, reached, nodes);
+}
+
+impl Subtree {
+    /// How many nodes it has.
+    fn len(&self) -> usize {
+        match self {
+            Self::Piece(nodes) => nodes.len(),
+            Self::Pair(_, children) => 1 + children[0].len() + children[1].len(),
+        }
+    }
+
+    /// Copies the root to its place, and all other nodes to theirs, the first of which has the given number.
+    fn copy_to(&self, root: &mut Node, descendants: &mut [Node], first: usize) {
+        match self {
+            Self::Piece(nodes) => {
+                let moved = |node: &Node| match node.is_leaf() {
+                    true => *node,
+                    false => node.with_children_at(node.left_first() + first as u32 - 1),
+                };
+                *root = moved(&nodes[0]);
+                for (node, copy) in nodes[1..].iter().zip(descendants) {
+                    *copy = moved(node);
+                }
+            }
+            Self::Pair(bounds, children) => {
+                *root = Node::interior((*bounds).into(), first as u32);
+                let (pair, below) = descendants.split_at_mut(2);
+                let (left_root, right_root) = pair.split_at_mut(1);
+                let below_left = children[0].len() - 1;
+                let (left, right) = below.split_at_mut(below_left);
+                parallel::join_if(
+                    true,
+                    || children[0].copy_to(&mut left_root[0], left, first + 2),
+                    || children[1].copy_to(&mut right_root[0], right, first + 2 + below_left),
+                );
+            }
+        }
+    }
 }
 
 /// Halves a set by the order of its centroids along the axis on which these spread most. Always succeeds.
-pub(crate) fn split_at_median(bounds: &[PackedAabb], indices: &mut [u32]) -> Split {
-    let center = |&i: &u32| bounds[i as usize].center();
-    let centers = indices.iter().fold(PackedAabb::EMPTY, |centers, i| centers.including(center(i)));
-    let axis = Aabb::from(centers).extent().max_axis();
-    let left_count = indices.len() / 2;
-    indices.select_nth_unstable_by(left_count, |a, b| {
-        center(a)[axis].total_cmp(&center(b)[axis]).then_with(|| a.cmp(b))
+pub(super) fn split_at_median(set: &mut Set<'_>) -> Split {
+    let axis = Aabb::from(set.around.centers).extent().max_axis();
+    let left_count = set.primitives.len() / 2;
+    set.primitives.select_nth_unstable_by(left_count, |a, b| {
+        let by_center = a.center()[axis].total_cmp(&b.center()[axis]);
+        by_center.then_with(|| a.number().cmp(&b.number()))
     });
-    Split::at(bounds, indices, left_count)
+    Split::at(set.primitives, left_count)
 }
 
 /// Divides a set by a property of each primitive's box; `None` if all or none have it.
 pub(super) fn partition_by(
-    bounds: &[PackedAabb],
-    indices: &mut [u32],
+    primitives: &mut [Primitive],
     goes_left: impl Fn(&PackedAabb) -> bool,
 ) -> Option<Split> {
-    let left_count = partition(indices, |i| goes_left(&bounds[i as usize]));
-    let divides = 0 < left_count && left_count < indices.len();
-    divides.then(|| Split::at(bounds, indices, left_count))
-}
-
-/// Copies the reachable nodes of a pool in depth-first order, pair by pair, without the room that leaves of several
-/// primitives left unused.
-fn close_gaps(pool: &[Node]) -> Vec<Node> {
-    let mut nodes = Vec::with_capacity(pool.len());
-    nodes.push(pool[0]);
-    // Parents whose children are still to be copied, by their new number.
-    let mut pending = vec![0usize];
-    while let Some(parent) = pending.pop() {
-        if nodes[parent].is_leaf() {
-            continue;
-        }
-        let (left, left_in_pool) = (nodes.len(), nodes[parent].left_first() as usize);
-        nodes[parent] = nodes[parent].with_children_at(left as u32);
-        nodes.extend_from_slice(&pool[left_in_pool..left_in_pool + 2]);
-        pending.push(left + 1);
-        pending.push(left);
+    // Every primitive is swapped to the end of those that go left, which counts it among them or not: no branch to be foreseen.
+    let mut left_count = 0;
+    for place in 0..primitives.len() {
+        let goes_left = goes_left(primitives[place].bounds());
+        primitives.swap(place, left_count);
+        left_count += usize::from(goes_left);
     }
-    nodes.shrink_to_fit();
-    nodes
-}
-
-/// Moves the numbers for which `goes_left` holds to the front, in place, and tells how many they are.
-pub(super) fn partition(indices: &mut [u32], goes_left: impl Fn(u32) -> bool) -> usize {
-    let (mut left, mut right) = (0, indices.len());
-    while left < right {
-        if goes_left(indices[left]) {
-            left += 1;
-        } else {
-            right -= 1;
-            indices.swap(left, right);
-        }
-    }
-    left
+    let divides = 0 < left_count && left_count < primitives.len();
+    divides.then(|| Split::at(primitives, left_count))
 }

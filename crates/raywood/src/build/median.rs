@@ -1,7 +1,6 @@
 //! Object median splits: halves by number, whatever the geometry.
 
-use super::PackedAabb;
-use super::driver::{Split, Splitter, split_at_median};
+use super::driver::{Set, Split, Splitter, split_at_median};
 use crate::BuildOptions;
 
 /// Halves the set along the axis on which the centroids spread most, until it is small enough to be a leaf: the balanced tree.
@@ -16,7 +15,7 @@ impl Median {
 }
 
 impl Splitter for Median {
-    fn split(&self, bounds: &[PackedAabb], indices: &mut [u32], _: &PackedAabb) -> Option<Split> {
-        (indices.len() > self.max_leaf_size).then(|| split_at_median(bounds, indices))
+    fn split(&self, set: &mut Set<'_>) -> Option<Split> {
+        (set.primitives.len() > self.max_leaf_size).then(|| split_at_median(set))
     }
 }

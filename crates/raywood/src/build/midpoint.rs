@@ -1,7 +1,6 @@
 //! Midpoint splits: the lecture's first builder.
 
-use super::PackedAabb;
-use super::driver::{Split, Splitter, partition_by, split_at_median};
+use super::driver::{Set, Split, Splitter, partition_by, split_at_median};
 use crate::{Aabb, BuildOptions};
 
 /// Splits in the middle of the node's longest axis, until a set is small enough to be a leaf.
@@ -16,20 +15,15 @@ impl Midpoint {
 }
 
 impl Splitter for Midpoint {
-    fn split(
-        &self,
-        bounds: &[PackedAabb],
-        indices: &mut [u32],
-        node_bounds: &PackedAabb,
-    ) -> Option<Split> {
-        if indices.len() <= self.max_leaf_size {
+    fn split(&self, set: &mut Set<'_>) -> Option<Split> {
+        if set.primitives.len() <= self.max_leaf_size {
             return None;
         }
-        let node = Aabb::from(*node_bounds);
+        let node = Aabb::from(set.around.bounds);
         let axis = (0.5 * node.max - 0.5 * node.min).max_axis();
         let middle = node.center()[axis];
-        let split = partition_by(bounds, indices, |primitive| primitive.center()[axis] < middle);
+        let split = partition_by(set.primitives, |primitive| primitive.center()[axis] < middle);
         // Everything on one side: as good as no split.
-        Some(split.unwrap_or_else(|| split_at_median(bounds, indices)))
+        Some(split.unwrap_or_else(|| split_at_median(set)))
     }
 }

@@ -7,10 +7,13 @@ mod median;
 mod midpoint;
 mod options;
 mod packed_aabb;
+mod primitive;
 mod reinsertion;
 mod sah_binned;
+mod sah_small;
 mod sah_sweep;
 
 pub use builder::Builder;
 pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;
+pub(crate) use primitive::Primitive;

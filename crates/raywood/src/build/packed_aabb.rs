@@ -11,8 +11,24 @@ pub(crate) struct PackedAabb {
     max: [f32; 4],
 }
 
+/// Twice the bits of the smallest normal float, so that half of a tag is none of the denormal floats either.
+const TAG_OFFSET: u32 = 2 << 23;
+
 impl PackedAabb {
     pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
+
+    /// The box with a number in the lane that means nothing. Numbers are kept from looking like denormal floats, with which some processors are slow.
+    #[inline]
+    pub(super) fn with_tag(mut self, number: u32) -> Self {
+        self.min[3] = f32::from_bits(number.wrapping_add(TAG_OFFSET));
+        self
+    }
+
+    /// The number that was put into the lane that means nothing.
+    #[inline]
+    pub(super) fn tag(&self) -> u32 {
+        self.min[3].to_bits().wrapping_sub(TAG_OFFSET)
+    }
 
     /// The smallest box around both. Neither has NaN.
     #[inline]
@@ -30,6 +46,15 @@ impl PackedAabb {
     #[inline]
     pub(crate) fn including(self, point: [f32; 4]) -> Self {
         Self { min: lanes(self.min, point, smaller), max: lanes(self.max, point, larger) }
+    }
+
+    /// The smallest box around this one and a point if the mask has all bits set; this one if it has none. Without a branch.
+    #[inline]
+    pub(super) fn including_if(self, mask: u32, point: [f32; 4]) -> Self {
+        let choose = |a: f32, b: f32| f32::from_bits(a.to_bits() & mask | b.to_bits() & !mask);
+        let min = lanes(point, [f32::INFINITY; 4], choose);
+        let max = lanes(point, [f32::NEG_INFINITY; 4], choose);
+        self.union(Self { min, max })
     }
 
     /// The centre. Does not overflow.
