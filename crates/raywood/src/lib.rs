@@ -53,7 +53,7 @@ mod validate;
 mod vec3;
 
 pub use aabb::Aabb;
-pub use build::{BuildOptions, Builder, TriangleTest};
+pub use build::{BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use error::BuildError;
 pub use geometry::{

@@ -41,7 +41,10 @@ pub(crate) fn map_pieces<T: Sync, A: Send>(
 }
 
 /// The results of `f` for a few large tasks, in order.
-pub(crate) fn map_tasks<T: Send, A: Send>(tasks: Vec<T>, f: impl Fn(T) -> A + Send + Sync) -> Vec<A> {
+pub(crate) fn map_tasks<T: Send, A: Send>(
+    tasks: Vec<T>,
+    f: impl Fn(T) -> A + Send + Sync,
+) -> Vec<A> {
     #[cfg(feature = "rayon")]
     return tasks.into_par_iter().map(f).collect();
     #[cfg(not(feature = "rayon"))]

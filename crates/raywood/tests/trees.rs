@@ -1,7 +1,8 @@
 //! The invariants of trees: any input, any number of threads.
 
 use raywood::{
-    Aabb, BuildError, BuildOptions, Bvh, Counts, Geometry, Hit, Ray, TriangleMesh, Vec3,
+    Aabb, BuildError, BuildOptions, BuildPreset, Bvh, Counts, Geometry, Hit, Ray, Structure,
+    StructureKind, TriangleMesh, Vec3,
 };
 use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
 use raywood_testkit::{nasty, shapes};
@@ -129,13 +130,14 @@ fn splits_lower_the_expected_cost() {
 #[cfg(feature = "rayon")]
 #[test]
 fn the_same_tree_for_any_number_of_threads() {
-    let mesh = shapes::soup(60_000, 0.02, 2);
+    // Several pieces of the sets that are divided by all threads, and a last one that is not full.
+    let mesh = shapes::soup(150_001, 0.02, 2);
     let build = |threads| -> raywood::Bvh2 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| raywood::Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
     };
     let one = build(1);
-    for threads in [2, 7] {
+    for threads in [2, 3, 8] {
         assert!(build(threads) == one, "{threads} threads give another tree");
     }
 }
@@ -201,4 +203,21 @@ fn the_probe_counts_what_is_tested() {
     assert!(counts.boxes % 2 == 1 && counts.boxes > 1, "{counts:?}");
     assert!(counts.primitives < 250, "{counts:?}");
     assert_eq!(tree.stats().bytes, 32 * tree.stats().nodes + 4 * 500);
+}
+
+#[test]
+fn presets_have_names_and_build_sound_trees_that_get_better() {
+    let mesh = shapes::soup(3000, 0.1, 5);
+    let mut costs = Vec::new();
+    for &preset in BuildPreset::ALL {
+        assert_eq!(BuildPreset::from_name(preset.name()), Some(preset));
+        let tree = Structure::build(StructureKind::BvhWide, &mesh, &preset.options());
+        let tree = tree.expect("it builds");
+        tree.validate().expect("a sound tree");
+        costs.push(tree.stats().q);
+    }
+    assert_eq!(BuildPreset::from_name("ultra"), None);
+    assert_eq!(BuildPreset::default().options(), BuildOptions::default());
+    let [fastest, .., best] = costs[..] else { panic!("several presets") };
+    assert!(costs.iter().all(|cost| best <= *cost && *cost <= fastest), "{costs:?}");
 }

@@ -163,7 +163,13 @@ fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
     if count <= PARALLEL_SUBTREES {
         let mut nodes = Vec::with_capacity(count);
         nodes.push(Node::leaf(set.around.bounds.into(), first as u32, count as u32));
-        subdivide(splitter, set.primitives, &set.around, Reached { number: 0, first, depth }, &mut nodes);
+        subdivide(
+            splitter,
+            set.primitives,
+            &set.around,
+            Reached { number: 0, first, depth },
+            &mut nodes,
+        );
         write_numbers(set.primitives, indices);
         return Subtree::Piece(nodes);
     }

@@ -16,6 +16,9 @@ pub struct BuildOptions {
     /// not. Only there: each of its primitives lies in one leaf, so that any set can be split in two smaller ones. No plane or grid does that
     /// for primitives that overlap, so structures that divide space stop where dividing no longer pays.
     pub max_leaf_size: usize,
+    /// The most primitives a leaf of the binary tree may hold from which the wide tree is made, at least 1. The wide tree puts leaves together again, up to
+    /// eight primitives; from smaller ones reinsertion makes slightly better trees, and takes longer.
+    pub wide_leaf_size: usize,
     /// The estimated cost of visiting a node (`C_aabb`).
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
@@ -54,6 +57,7 @@ impl Default for BuildOptions {
         Self {
             bins: 16,
             max_leaf_size: 8,
+            wide_leaf_size: 4,
             node_cost: 1.0,
             primitive_cost: 1.0,
             reinsertion_passes: None,
@@ -76,6 +80,7 @@ impl BuildOptions {
         Self {
             bins: self.bins.clamp(2, super::sah_binned::MAX_BINS),
             max_leaf_size: self.max_leaf_size.max(1),
+            wide_leaf_size: self.wide_leaf_size.clamp(1, crate::geometry::LANES),
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
             reinsertion_passes: self.reinsertion_passes,

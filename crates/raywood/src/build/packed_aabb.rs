@@ -18,38 +18,38 @@ impl PackedAabb {
     pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
 
     /// The box with a number in the lane that means nothing. Numbers are kept from looking like denormal floats, with which some processors are slow.
-    #[inline]
+    #[inline(always)]
     pub(super) fn with_tag(mut self, number: u32) -> Self {
         self.min[3] = f32::from_bits(number.wrapping_add(TAG_OFFSET));
         self
     }
 
     /// The number that was put into the lane that means nothing.
-    #[inline]
+    #[inline(always)]
     pub(super) fn tag(&self) -> u32 {
         self.min[3].to_bits().wrapping_sub(TAG_OFFSET)
     }
 
     /// The smallest box around both. Neither has NaN.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn union(self, other: Self) -> Self {
         Self { min: lanes(self.min, other.min, smaller), max: lanes(self.max, other.max, larger) }
     }
 
     /// Makes this box the smallest one around both.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn grow(&mut self, other: &Self) {
         *self = self.union(*other);
     }
 
     /// The smallest box around this one and a point.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn including(self, point: [f32; 4]) -> Self {
         Self { min: lanes(self.min, point, smaller), max: lanes(self.max, point, larger) }
     }
 
     /// The smallest box around this one and a point if the mask has all bits set; this one if it has none. Without a branch.
-    #[inline]
+    #[inline(always)]
     pub(super) fn including_if(self, mask: u32, point: [f32; 4]) -> Self {
         let choose = |a: f32, b: f32| f32::from_bits(a.to_bits() & mask | b.to_bits() & !mask);
         let min = lanes(point, [f32::INFINITY; 4], choose);
@@ -58,47 +58,49 @@ impl PackedAabb {
     }
 
     /// The centre. Does not overflow.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn center(&self) -> [f32; 4] {
         lanes(self.min, self.max, |a, b| 0.5 * a + 0.5 * b)
     }
 
     /// The smallest coordinates.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn min(&self) -> [f32; 4] {
         self.min
     }
 
     /// The lengths of the edges; may overflow to infinity.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn extent(&self) -> [f32; 4] {
         lanes(self.max, self.min, |a, b| a - b)
     }
 
     /// Half the surface area of a box that is not empty, in double precision, where no finite box overflows or vanishes.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn half_area(&self) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]));
+        // Not `map`, which the compiler does not always inline.
+        let edge = |axis: usize| f64::from(self.max[axis]) - f64::from(self.min[axis]);
+        let (x, y, z) = (edge(0), edge(1), edge(2));
         x * y + y * z + z * x
     }
 }
 
 impl From<Aabb> for PackedAabb {
-    #[inline]
+    #[inline(always)]
     fn from(Aabb { min, max }: Aabb) -> Self {
         Self { min: [min.x, min.y, min.z, 0.0], max: [max.x, max.y, max.z, 0.0] }
     }
 }
 
 impl From<PackedAabb> for Aabb {
-    #[inline]
+    #[inline(always)]
     fn from(PackedAabb { min, max }: PackedAabb) -> Self {
         Self { min: Vec3::new(min[0], min[1], min[2]), max: Vec3::new(max[0], max[1], max[2]) }
     }
 }
 
 /// `f` of each pair.
-#[inline]
+#[inline(always)]
 fn lanes(a: [f32; 4], b: [f32; 4], f: impl Fn(f32, f32) -> f32) -> [f32; 4] {
     [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2]), f(a[3], b[3])]
 }

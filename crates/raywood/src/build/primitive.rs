@@ -8,25 +8,25 @@ use super::PackedAabb;
 pub(crate) struct Primitive(PackedAabb);
 
 impl Primitive {
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(number: u32, bounds: PackedAabb) -> Self {
         Self(bounds.with_tag(number))
     }
 
     /// Its number.
-    #[inline]
+    #[inline(always)]
     pub(super) fn number(&self) -> u32 {
         self.0.tag()
     }
 
     /// Its box.
-    #[inline]
+    #[inline(always)]
     pub(super) fn bounds(&self) -> &PackedAabb {
         &self.0
     }
 
     /// The centre of its box.
-    #[inline]
+    #[inline(always)]
     pub(super) fn center(&self) -> [f32; 4] {
         self.0.center()
     }

@@ -35,7 +35,9 @@ impl BinnedSah {
         let binning = Binning::new(&set.around.centers, bins);
         let pieces = match set.spare {
             [] => vec![],
-            _ => parallel::map_pieces(set.primitives, PIECE, |piece| Bins::<BINS>::of(&binning, piece)),
+            _ => parallel::map_pieces(set.primitives, PIECE, |piece| {
+                Bins::<BINS>::of(&binning, piece)
+            }),
         };
         let bins = match pieces.split_first() {
             None => Bins::of(&binning, set.primitives),
@@ -109,7 +111,7 @@ impl Binning {
     }
 
     /// The number of the bin on one axis, as a float from [`WHOLE`] on, which takes no conversion. Not a number (no extent) is in the last one.
-    #[inline]
+    #[inline(always)]
     fn along(&self, center: f32, axis: usize) -> f32 {
         let place = (center - self.start[axis]) * self.scale[axis] - 0.5;
         let place = if place < self.last { place } else { self.last };
@@ -148,9 +150,9 @@ impl<const BINS: usize> Bins<BINS> {
         let mut all = Self { bounds: [[PackedAabb::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
         for primitive in primitives {
             let center = primitive.center();
-            let place = [0, 1, 2, 0].map(|axis| binning.along(center[axis], axis));
-            for axis in 0..3 {
-                let bin = place[axis].to_bits() as usize % BINS;
+            // Not `map`, which the compiler does not always inline.
+            let along = |axis: usize| binning.along(center[axis], axis).to_bits() as usize % BINS;
+            for (axis, bin) in [along(0), along(1), along(2)].into_iter().enumerate() {
                 all.bounds[axis][bin].grow(primitive.bounds());
                 all.counts[axis][bin] += 1;
             }
@@ -219,7 +221,7 @@ struct Side<'a> {
 
 impl Side<'_> {
     /// Whether a primitive goes left; and it is added to the box of centres on its side.
-    #[inline]
+    #[inline(always)]
     fn take(&self, primitive: &Primitive, centers: &mut [PackedAabb; 2]) -> bool {
         let center = primitive.center();
         let goes_left = self.binning.along(center[self.axis], self.axis) < self.end;

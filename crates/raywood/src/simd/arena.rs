@@ -29,12 +29,14 @@ impl Arena {
         self.0.len()
     }
 
-    /// Adds a thing and returns the number of its first line.
-    pub(crate) fn push<T: Lines>(&mut self, thing: T) -> usize {
-        let line = self.len();
-        self.0.resize(line + size_of::<T>() / 64, Line([0; 16]));
-        *self.get_mut(line) = thing;
-        line
+    /// So many lines of zeros.
+    pub(crate) fn new(lines: usize) -> Self {
+        Self(crate::parallel::map(lines, |_| Line([0; 16])))
+    }
+
+    /// All lines, to be filled.
+    pub(crate) fn all(&mut self) -> Part<'_> {
+        Part { lines: &mut self.0, first: 0 }
     }
 
     /// The thing whose first line has this number.
@@ -49,20 +51,65 @@ impl Arena {
         unsafe { &*lines.as_ptr().cast() }
     }
 
-    /// The same, to be changed.
-    ///
-    /// # Panics
-    ///
-    /// If there are not as many lines.
+    /// The same, to be damaged by tests.
+    #[cfg(test)]
     pub(crate) fn get_mut<T: Lines>(&mut self, line: usize) -> &mut T {
         let lines = &mut self.0[line..line + size_of::<T>() / 64];
         // SAFETY: as above.
         unsafe { &mut *lines.as_mut_ptr().cast() }
     }
 
+    /// Adds lines of zeros that nothing refers to.
+    #[cfg(test)]
+    pub(crate) fn grow(&mut self, lines: usize) {
+        self.0.resize(self.len() + lines, Line([0; 16]));
+    }
+
     /// Where a line lies in memory, to be fetched; it need not exist.
     #[inline(always)]
     pub(crate) fn address(&self, line: usize) -> *const u8 {
         self.0.as_ptr().wrapping_add(line).cast()
+    }
+}
+
+/// Some of the lines of an arena, side by side, to be filled: so that threads can each fill their own.
+pub(crate) struct Part<'a> {
+    lines: &'a mut [Line],
+    /// The number of the first of them.
+    first: usize,
+}
+
+impl<'a> Part<'a> {
+    /// The number of its first line.
+    pub(crate) fn first(&self) -> usize {
+        self.first
+    }
+
+    /// How many lines there are.
+    pub(crate) fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// Takes so many lines from its front.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many.
+    pub(crate) fn take(&mut self, lines: usize) -> Self {
+        let (front, rest) = std::mem::take(&mut self.lines).split_at_mut(lines);
+        let part = Self { lines: front, first: self.first };
+        (self.lines, self.first) = (rest, self.first + lines);
+        part
+    }
+
+    /// Puts a thing into its first lines.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many as the thing has.
+    pub(crate) fn put<T: Lines>(&mut self, thing: T) {
+        let lines = &mut self.lines[..size_of::<T>() / 64];
+        // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
+        unsafe { lines.as_mut_ptr().cast::<T>().write(thing) }
     }
 }

@@ -22,7 +22,7 @@ mod vectorized;
 mod tests;
 
 use crate::Ray;
-pub(crate) use arena::Arena;
+pub(crate) use arena::{Arena, Part};
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};

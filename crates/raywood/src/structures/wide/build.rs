@@ -1,18 +1,17 @@
 //! Building the wide tree from a binary one.
 
 use super::WideBvh;
-use super::collapse::Plan;
-use super::node::{Reference, WideNode};
-use crate::geometry::{LANES, TriangleBlock};
-use crate::simd::Arena;
-use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel};
-
-/// The most primitives in a leaf of the binary tree: half of what a leaf of the wide tree holds, so that reinsertion can tell apart what lies in it. Single
-/// primitives gain little more and take twice as many nodes.
-const BINARY_LEAF_SIZE: usize = LANES / 2;
+use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
+use super::node::{Reference, WIDTH, WideNode};
+use crate::geometry::TriangleBlock;
+use crate::simd::{Arena, Part};
+use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, parallel};
 
 /// How often the binary tree is improved by reinsertion unless the options say it.
 const REINSERTION_PASSES: usize = 4;
+
+/// Subtrees of more lines are filled in parallel.
+const PARALLEL_LINES: usize = 1 << 13;
 
 /// Builds the tree.
 pub(super) fn build<G: Geometry>(
@@ -20,27 +19,28 @@ pub(super) fn build<G: Geometry>(
     options: &BuildOptions,
 ) -> Result<WideBvh, BuildError> {
     let options = BuildOptions {
-        max_leaf_size: options.max_leaf_size.min(BINARY_LEAF_SIZE),
+        max_leaf_size: options.max_leaf_size.min(options.clamped().wide_leaf_size),
         reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
         ..options.clone()
     };
     let tree = Bvh2::build(geometry, &options)?;
     let plan = Plan::new(&tree);
-    let mut builder =
-        Wide { geometry, tree: &tree, plan: &plan, depth: 0, arena: Arena::default() };
-    let root = match tree.nodes() {
-        [] => Reference::NOTHING,
-        _ if plan.is_leaf(0) => builder.leaf(0),
-        _ => {
-            let root = builder.arena.push(WideNode::EMPTY);
-            builder.fill(root, 0, 1);
-            Reference::node(root)
-        }
+    let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
+    let lines = match tree.nodes() {
+        [] => 0,
+        _ if is_node => NODE_LINES + plan.lines_below(0),
+        _ => LEAF_LINES,
     };
-    let Wide { depth, arena, .. } = builder;
-    if arena.len() > Reference::LINES {
+    if lines > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
+    let mut arena = Arena::new(lines);
+    let wide = Wide { geometry, tree: &tree, plan: &plan };
+    let (root, depth) = match tree.nodes() {
+        [] => (Reference::NOTHING, 0),
+        _ if is_node => (Reference::node(0), wide.fill(0, arena.all())),
+        _ => (wide.leaf(0, arena.all()), 0),
+    };
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     let triangle_test = options.triangle_test;
@@ -61,34 +61,49 @@ struct Wide<'a, G> {
     geometry: &'a G,
     tree: &'a Bvh2,
     plan: &'a Plan,
-    depth: usize,
-    arena: Arena,
 }
 
 impl<G: Geometry> Wide<'_, G> {
-    /// Fills the node at a line, which takes the place of node `number` of the binary tree, and everything below it. The children lie side by side.
-    fn fill(&mut self, line: usize, number: usize, depth: usize) {
-        self.depth = self.depth.max(depth);
-        let children = self.plan.children(self.tree, number);
-        let mut nodes = Vec::new();
-        for (lane, number) in children.into_iter().enumerate() {
-            let child = if self.plan.is_leaf(number) {
-                self.leaf(number)
-            } else {
-                let line = self.arena.push(WideNode::EMPTY);
-                nodes.push((line, number));
-                Reference::node(line)
-            };
-            let bounds = self.tree.nodes()[number].bounds();
-            self.arena.get_mut::<WideNode>(line).set(lane, &bounds, child);
-        }
-        for (line, number) in nodes {
-            self.fill(line, number, depth + 1);
-        }
+    /// Fills the place of node `number` of the binary tree with a wide node and everything below it: first its children side by side, then what is below
+    /// the first of them, and so on. Returns how many nodes lie on the longest way down.
+    fn fill(&self, number: usize, mut all: Part<'_>) -> usize {
+        let place = all.take(NODE_LINES);
+        self.fill_below(number, place, all)
     }
 
-    /// A leaf of all primitives below node `number` of the binary tree.
-    fn leaf(&mut self, number: usize) -> Reference {
+    /// Fills the place of a node and that of everything below it.
+    fn fill_below(&self, number: usize, mut place: Part<'_>, mut below: Part<'_>) -> usize {
+        let is_large = below.len() > PARALLEL_LINES;
+        let children = self.plan.children(self.tree, number);
+        let mut node = WideNode::EMPTY;
+        let mut nodes = [const { None }; WIDTH];
+        for (lane, number) in children.numbers().enumerate() {
+            let child = if self.plan.is_leaf(number) {
+                self.leaf(number, below.take(LEAF_LINES))
+            } else {
+                let place = below.take(NODE_LINES);
+                let child = Reference::node(place.first());
+                nodes[lane] = Some((number, place));
+                child
+            };
+            node.set(lane, &self.tree.nodes()[number].bounds(), child);
+        }
+        place.put(node);
+
+        let tasks = nodes.into_iter().flatten().map(|(number, place)| {
+            let below = below.take(self.plan.lines_below(number));
+            (number, place, below)
+        });
+        let fill = |(number, place, below)| self.fill_below(number, place, below);
+        let deepest = match is_large {
+            true => parallel::map_tasks(tasks.collect(), fill).into_iter().max(),
+            false => tasks.map(fill).max(),
+        };
+        1 + deepest.unwrap_or(0)
+    }
+
+    /// Fills the place of a leaf of all primitives below node `number` of the binary tree.
+    fn leaf(&self, number: usize, mut place: Part<'_>) -> Reference {
         // Their numbers lie side by side, from those of the leftmost leaf to those of the rightmost.
         let nodes = self.tree.nodes();
         let (mut first, mut last) = (&nodes[number], &nodes[number]);
@@ -108,6 +123,7 @@ impl<G: Geometry> Wide<'_, G> {
             mixed |= triangle.is_none();
             block.set(lane, primitive, triangle.unwrap_or_default());
         }
-        Reference::leaf(self.arena.push(block), primitives.len(), mixed)
+        place.put(block);
+        Reference::leaf(place.first(), primitives.len(), mixed)
     }
 }

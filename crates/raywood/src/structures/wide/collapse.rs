@@ -1,118 +1,197 @@
 //! From two children a node to sixteen: which nodes of the binary tree are kept, by the surface area heuristic. Ylitie, Karras and Laine,
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.
 
-use super::node::WIDTH;
+use super::node::{WIDTH, WideNode};
 use crate::Bvh2;
-use crate::geometry::LANES;
+use crate::geometry::{LANES, TriangleBlock};
+use crate::parallel::join_if;
+
+/// How many cache lines a node takes.
+pub(super) const NODE_LINES: usize = size_of::<WideNode>() / 64;
+
+/// How many cache lines a leaf takes.
+pub(super) const LEAF_LINES: usize = size_of::<TriangleBlock>() / 64;
 
 /// What visiting a leaf costs, in visits to nodes.
 const LEAF_COST: f32 = 1.0;
 
-/// The costs of a subtree as at most so many separate trees, from one to sixteen, by number less one.
-type Costs = [f32; WIDTH];
+/// Subtrees with more nodes below them are looked at in parallel.
+const PARALLEL_NODES: usize = 4096;
 
 /// What is best for each node of a binary tree.
 pub(super) struct Plan {
+    choices: Vec<Choice>,
+}
+
+/// What is best for one node.
+#[derive(Clone, Copy)]
+struct Choice {
     /// How many trees the left child becomes when the node's subtree becomes at most so many, from two to sixteen, by number less one; 0 where fewer
     /// trees are better. First stands whether the node becomes a leaf when its subtree is to be one tree.
-    choices: Vec<[u8; WIDTH]>,
+    trees: [u8; WIDTH],
+    /// How many cache lines everything below the wide node takes that the node becomes; of a leaf none.
+    lines_below: u32,
+}
+
+impl Choice {
+    const NONE: Self = Self { trees: [0; WIDTH], lines_below: 0 };
+}
+
+/// What a subtree is as at most so many separate trees, from one to sixteen, by number less one.
+struct Trees {
+    costs: [f32; WIDTH],
+    /// Cache lines.
+    lines: [u32; WIDTH],
+    /// Into how many trees it can be divided: as many as it has leaves.
+    most: usize,
+    /// How many primitives it has.
+    primitives: u32,
 }
 
 impl Plan {
-    /// Finds what costs least. O(nodes).
+    /// Finds what costs least. O(nodes), in parallel.
     pub(super) fn new(tree: &Bvh2) -> Self {
-        let nodes = tree.nodes();
-        let root_area = tree.bounds().half_area();
-        let mut costs: Vec<Costs> = vec![[f32::INFINITY; WIDTH]; nodes.len()];
-        let mut counts = vec![0u32; nodes.len()];
-        // Into how many trees a subtree can be divided: as many as it has leaves.
-        let mut most = vec![1u8; nodes.len()];
-        let mut choices = vec![[0u8; WIDTH]; nodes.len()];
-
-        // Children come after their parents.
-        for (number, node) in nodes.iter().enumerate().rev() {
-            // Relative to the root's, which neither overflows nor vanishes; of a line every part is met as often as the whole.
-            let area = if root_area > 0.0 { node.bounds().half_area() / root_area } else { 1.0 };
-            let area = area as f32;
-            if node.is_leaf() {
-                counts[number] = node.count();
-                costs[number][0] = area * LEAF_COST;
-                choices[number][0] = 1;
-                continue;
-            }
-            let (left, right) = (node.left_first() as usize, node.left_first() as usize + 1);
-            counts[number] = counts[left].saturating_add(counts[right]);
-
-            // Divide so many trees among both children in the best way.
-            let mut divided = [f32::INFINITY; WIDTH];
-            let (most_left, most_right) = (usize::from(most[left]), usize::from(most[right]));
-            let most_here = (most_left + most_right).min(WIDTH);
-            most[number] = most_here as u8;
-            for trees in 2..=most_here {
-                let fewest_left = trees.saturating_sub(most_right).max(1);
-                for to_left in fewest_left..=most_left.min(trees - 1) {
-                    let cost = costs[left][to_left - 1] + costs[right][trees - to_left - 1];
-                    if cost < divided[trees - 1] {
-                        divided[trees - 1] = cost;
-                        choices[number][trees - 1] = to_left as u8;
-                    }
-                }
-            }
-
-            // One tree: a leaf, or a node over sixteen.
-            let as_node = area + divided[most_here - 1];
-            choices[number][WIDTH - 1] = choices[number][most_here - 1];
-            let as_leaf = match counts[number] as usize <= LANES {
-                true => area * LEAF_COST,
-                false => f32::INFINITY,
-            };
-            costs[number][0] = as_leaf.min(as_node);
-            choices[number][0] = u8::from(as_leaf <= as_node && as_leaf.is_finite());
-            for trees in 2..=most_here {
-                let fewer = costs[number][trees - 2];
-                if fewer <= divided[trees - 1] {
-                    // Sixteen are asked for only when there must be a node here.
-                    if trees < WIDTH {
-                        choices[number][trees - 1] = 0;
-                    }
-                    costs[number][trees - 1] = fewer;
-                } else {
-                    costs[number][trees - 1] = divided[trees - 1];
-                }
-            }
+        let mut choices = vec![Choice::NONE; tree.nodes().len()];
+        if let Some((root, below)) = choices.split_first_mut() {
+            Search { tree, root_area: tree.bounds().half_area() }.best(0, root, below);
         }
         Self { choices }
     }
 
     /// Whether the node of the binary tree becomes a leaf, given that it becomes one tree.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
-        self.choices[number][0] == 1
+        self.choices[number].trees[0] == 1
+    }
+
+    /// How many cache lines everything below a node takes, given that it becomes one tree and no leaf.
+    pub(super) fn lines_below(&self, number: usize) -> usize {
+        self.choices[number].lines_below as usize
     }
 
     /// The nodes of the binary tree that become the children of the wide node in the place of one of them, which is no leaf.
-    pub(super) fn children(&self, tree: &Bvh2, number: usize) -> Vec<usize> {
-        let mut children = Vec::with_capacity(WIDTH);
-        let mut pending = vec![(number, WIDTH, true)];
-        while let Some((number, mut trees, must_divide)) = pending.pop() {
-            if !must_divide {
-                while trees > 1 && self.takes_fewer(number, trees) {
-                    trees -= 1;
-                }
-            }
-            if trees == 1 {
-                children.push(number);
-                continue;
-            }
-            let to_left = usize::from(self.choices[number][trees - 1]);
-            let left = tree.nodes()[number].left_first() as usize;
-            pending.push((left + 1, trees - to_left, false));
-            pending.push((left, to_left, false));
-        }
+    pub(super) fn children(&self, tree: &Bvh2, number: usize) -> Children {
+        let mut children = Children { numbers: [0; WIDTH], count: 0 };
+        self.collect(tree, (number, WIDTH), true, &mut children);
         children
     }
 
-    /// Whether fewer trees than so many are at least as good.
-    fn takes_fewer(&self, number: usize, trees: usize) -> bool {
-        self.choices[number][trees - 1] == 0
+    /// Adds the trees that a subtree becomes, at most so many.
+    fn collect(
+        &self,
+        tree: &Bvh2,
+        (number, mut trees): (usize, usize),
+        must_divide: bool,
+        children: &mut Children,
+    ) {
+        let choice = &self.choices[number].trees;
+        while !must_divide && trees > 1 && choice[trees - 1] == 0 {
+            trees -= 1;
+        }
+        if trees == 1 {
+            children.numbers[children.count] = number as u32;
+            children.count += 1;
+            return;
+        }
+        let to_left = usize::from(choice[trees - 1]);
+        let left = tree.nodes()[number].left_first() as usize;
+        self.collect(tree, (left, to_left), false, children);
+        self.collect(tree, (left + 1, trees - to_left), false, children);
+    }
+}
+
+/// Some nodes of the binary tree.
+pub(super) struct Children {
+    numbers: [u32; WIDTH],
+    count: usize,
+}
+
+impl Children {
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.numbers[..self.count].iter().map(|&number| number as usize)
+    }
+}
+
+/// The search for the best plan.
+struct Search<'a> {
+    tree: &'a Bvh2,
+    root_area: f64,
+}
+
+impl Search<'_> {
+    /// Finds what is best for a node and all nodes below it, whose choices lie side by side.
+    fn best(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Trees {
+        let node = &self.tree.nodes()[number];
+        // Relative to the root's, which neither overflows nor vanishes; of a line every part is met as often as the whole.
+        let area = match self.root_area > 0.0 {
+            true => (node.bounds().half_area() / self.root_area) as f32,
+            false => 1.0,
+        };
+        let mut costs = [f32::INFINITY; WIDTH];
+        let mut lines = [LEAF_LINES as u32; WIDTH];
+        if node.is_leaf() {
+            costs[0] = area * LEAF_COST;
+            choice.trees[0] = 1;
+            return Trees { costs, lines, most: 1, primitives: node.count() };
+        }
+
+        // The nodes of a tree lie depth first, pair by pair: below the pair first what is below its left node.
+        let first = node.left_first() as usize;
+        let (pair, below) = below.split_at_mut(2);
+        let parallel = below.len() > PARALLEL_NODES;
+        let right_node = &self.tree.nodes()[first + 1];
+        let below_left = match right_node.is_leaf() {
+            true => below.len(),
+            false => right_node.left_first() as usize - (first + 2),
+        };
+        let (below_left, below_right) = below.split_at_mut(below_left);
+        let [left, right] = pair else { unreachable!("two children") };
+        let (left, right) = join_if(
+            parallel,
+            || self.best(first, left, below_left),
+            || self.best(first + 1, right, below_right),
+        );
+        let primitives = left.primitives.saturating_add(right.primitives);
+
+        // Divide so many trees among both children in the best way.
+        let most = (left.most + right.most).min(WIDTH);
+        for trees in 2..=most {
+            let fewest_left = trees.saturating_sub(right.most).max(1);
+            for to_left in fewest_left..=left.most.min(trees - 1) {
+                let cost = left.costs[to_left - 1] + right.costs[trees - to_left - 1];
+                if cost < costs[trees - 1] {
+                    costs[trees - 1] = cost;
+                    choice.trees[trees - 1] = to_left as u8;
+                }
+            }
+            let to_left = usize::from(choice.trees[trees - 1]).max(1);
+            lines[trees - 1] =
+                left.lines[to_left - 1].saturating_add(right.lines[trees - to_left - 1]);
+        }
+
+        // One tree: a leaf, or a node over sixteen.
+        let as_node = area + costs[most - 1];
+        choice.trees[WIDTH - 1] = choice.trees[most - 1];
+        let as_leaf = match primitives as usize <= LANES {
+            true => area * LEAF_COST,
+            false => f32::INFINITY,
+        };
+        costs[0] = as_leaf.min(as_node);
+        if as_leaf <= as_node && as_leaf.is_finite() {
+            choice.trees[0] = 1;
+        } else {
+            choice.lines_below = lines[most - 1];
+            lines[0] = choice.lines_below.saturating_add(NODE_LINES as u32);
+        }
+        for trees in 2..=most {
+            if costs[trees - 2] <= costs[trees - 1] {
+                // Sixteen are asked for only when there must be a node here.
+                if trees < WIDTH {
+                    choice.trees[trees - 1] = 0;
+                }
+                costs[trees - 1] = costs[trees - 2];
+                lines[trees - 1] = lines[trees - 2];
+            }
+        }
+        Trees { costs, lines, most, primitives }
     }
 }

@@ -6,7 +6,8 @@ use crate::geometry::TriangleBlock;
 use crate::simd::{SimdLevel, dispatch_on};
 use crate::structures::AccelerationStructure;
 use crate::{
-    BuildOptions, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, TriangleTest, Vec3,
+    BuildOptions, BuildPreset, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, TriangleTest,
+    Vec3,
 };
 
 /// Random numbers from -1 to 1.
@@ -174,9 +175,7 @@ fn damage_is_noticed() {
     });
     damaged(|tree| tree.depth = 1);
     damaged(|tree| tree.primitives += 1);
-    damaged(|tree| {
-        tree.arena.push(WideNode::EMPTY);
-    });
+    damaged(|tree| tree.arena.grow(7));
 }
 
 #[test]
@@ -187,4 +186,21 @@ fn most_leaves_are_full_and_most_nodes_have_many_children() {
     assert!(stats.mean_leaf_primitives > 3.0, "{stats}");
     let children = (stats.nodes - 1) as f64 / (stats.nodes - stats.leaves) as f64;
     assert!(children > 8.0, "{children} children a node: {stats}");
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let things = things(40_000, 100);
+    for preset in BuildPreset::ALL {
+        let build = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let build = || WideBvh::build(&things, &preset.options()).expect("it builds");
+            pool.expect("a pool").install(build)
+        };
+        let one = build(1);
+        for threads in [2, 3, 8] {
+            assert!(build(threads) == one, "{}: {threads} threads", preset.name());
+        }
+    }
 }

@@ -1,0 +1,75 @@
+//! Builds by name, from the fastest to the one with the best tree.
+
+use super::BuildOptions;
+
+/// A point of the trade between the time to build a bounding volume hierarchy and the time to trace through it. What each chooses stands in
+/// [`options`](Self::options); grids, octree and kD-tree are the same by all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum BuildPreset {
+    /// Few bins, leaves of up to eight, nothing improved: for scenes that change with every picture.
+    Fastest,
+    /// As many bins as usual, nothing improved.
+    Fast,
+    /// The default: the largest nodes improved in a few passes.
+    #[default]
+    Balanced,
+    /// More bins, more nodes improved in more passes.
+    High,
+    /// Every node improved as long as it pays: for scenes that are traced for long.
+    Best,
+}
+
+impl BuildPreset {
+    /// All presets, the fastest build first.
+    pub const ALL: &[Self] = &[Self::Fastest, Self::Fast, Self::Balanced, Self::High, Self::Best];
+
+    /// Its name, as command lines have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fastest => "fastest",
+            Self::Fast => "fast",
+            Self::Balanced => "balanced",
+            Self::High => "high",
+            Self::Best => "best",
+        }
+    }
+
+    /// The preset of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|preset| preset.name() == name)
+    }
+
+    /// What it chooses. `balanced` is [`BuildOptions::default`]; each of the others differs from it as told here, and all else may be changed:
+    ///
+    /// | preset | `bins` | `wide_leaf_size` | `reinsertion_passes` | `reinsertion_share` |
+    /// | --- | ---: | ---: | --- | ---: |
+    /// | `fastest` | 8 | 8 | none | |
+    /// | `fast` | 16 | 4 | none | |
+    /// | `balanced` | 16 | 4 | four for the wide tree, none for binary trees | 0.05 |
+    /// | `high` | 32 | 4 | up to 10 | 0.2 |
+    /// | `best` | 32 | 1 | up to 20 | 1.0 |
+    pub fn options(self) -> BuildOptions {
+        let balanced = BuildOptions::default();
+        match self {
+            Self::Fastest => {
+                BuildOptions { bins: 8, wide_leaf_size: 8, reinsertion_passes: Some(0), ..balanced }
+            }
+            Self::Fast => BuildOptions { reinsertion_passes: Some(0), ..balanced },
+            Self::Balanced => balanced,
+            Self::High => BuildOptions {
+                bins: 32,
+                reinsertion_passes: Some(10),
+                reinsertion_share: 0.2,
+                ..balanced
+            },
+            Self::Best => BuildOptions {
+                bins: 32,
+                wide_leaf_size: 1,
+                reinsertion_passes: Some(20),
+                reinsertion_share: 1.0,
+                ..balanced
+            },
+        }
+    }
+}
