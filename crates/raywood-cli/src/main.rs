@@ -1,5 +1,6 @@
 //! The command `raywood`: a model file in, a ray-traced picture out.
 
+mod build_args;
 mod commands;
 mod exporters;
 mod failure;

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use raywood::{SimdLevel, StructureKind, Vec3};
+use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
 use raywood_render::HeatQuantity;
 
 /// A point or direction, `X,Y,Z`.
@@ -85,6 +85,14 @@ pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
     })
 }
 
+/// The name of a preset of builds.
+pub(crate) fn build_preset(text: &str) -> Result<BuildPreset, String> {
+    BuildPreset::from_name(text).ok_or_else(|| {
+        let names: Vec<_> = BuildPreset::ALL.iter().map(|preset| preset.name()).collect();
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
 /// The name of a level of vector instructions.
 pub(crate) fn simd_level(text: &str) -> Result<SimdLevel, String> {
     SimdLevel::from_name(text).ok_or_else(|| {
@@ -144,6 +152,11 @@ mod tests {
         assert!(["0", "180", "nan", "-5", "wide"].iter().all(|bad| field_of_view(bad).is_err()));
         assert_eq!(above_zero("0.5"), Ok(0.5));
         assert!(["0", "-1", "nan", "inf", "1e99", ""].iter().all(|bad| above_zero(bad).is_err()));
+        for &preset in BuildPreset::ALL {
+            assert_eq!(build_preset(preset.name()), Ok(preset));
+        }
+        let said = build_preset("ultra").expect_err("no such preset");
+        assert_eq!(said, "expected one of fastest, fast, balanced, high, best");
         assert_eq!(heat_quantity("tests"), Ok(HeatQuantity::Tests));
         let said = heat_quantity("time").expect_err("no such quantity");
         assert_eq!(said, "expected one of nodes, boxes, primitives, tests");

@@ -19,7 +19,7 @@ pub(crate) struct ViewArgs {
     target: Option<Point>,
 
     /// The direction that is up
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, hide_short_help = true)]
     up: Option<Point>,
 
     /// Field of view from bottom to top

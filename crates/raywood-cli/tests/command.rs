@@ -88,6 +88,27 @@ fn the_picture_does_not_depend_on_the_structure() {
 }
 
 #[test]
+fn the_picture_does_not_depend_on_the_build() {
+    let folder = folder("builds");
+    let said = stderr(&run(&folder, "render --build ultra"));
+    assert!(said.contains("expected one of fastest, fast, balanced, high, best"), "{said}");
+    let mut pictures = Vec::new();
+    for preset in raywood::BuildPreset::ALL {
+        let name = preset.name();
+        let arguments =
+            format!("render builtin:sphereflake --size 48x30 --build {name} -o {name}.png");
+        let output = run(&folder, &arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        pictures.push(std::fs::read(folder.join(format!("{name}.png"))).expect("a picture"));
+    }
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+    for command in ["info builtin:whitted", "compare builtin:whitted --structures bvh-wide"] {
+        let output = run(&folder, &format!("{command} --build fastest"));
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+    }
+}
+
+#[test]
 fn a_heat_map_is_drawn_above_a_legend_and_reported() {
     let folder = folder("heatmap");
     write_triangle(&folder);

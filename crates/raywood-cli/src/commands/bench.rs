@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use raywood::StructureKind;
 use raywood_lab::{BenchmarkError, BenchmarkOptions, benchmark};
-use raywood_render::{PreparedScene, RenderOptions};
+use raywood_render::RenderOptions;
 
 use super::thread_pool;
+use crate::build_args::BuildArgs;
 use crate::exporters::Format;
 use crate::exporters::benchmark::Benched;
 use crate::failure::Failure;
@@ -61,6 +62,9 @@ pub(crate) struct Args {
     format: Format,
 
     #[command(flatten)]
+    build: BuildArgs,
+
+    #[command(flatten)]
     simd: SimdArgs,
 
     #[command(flatten)]
@@ -95,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepare = || PreparedScene::with_structure(&scene, kind);
+    let prepare = || args.build.prepare(&scene, kind);
     let mut prepared = during_step("building the structure", || pool.install(prepare))
         .map_err(Failure::bad_input)?;
     let build = (started.elapsed().as_secs_f64(), pool.current_num_threads());

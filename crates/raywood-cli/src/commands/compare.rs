@@ -8,6 +8,7 @@ use raywood_render::{HeatMap, HeatQuantity, PreparedScene, Progress, RenderOptio
 use raywood_scene::{Camera, Scene};
 
 use super::thread_pool;
+use crate::build_args::BuildArgs;
 use crate::exporters::Format;
 use crate::exporters::comparison::Compared;
 use crate::exporters::comparison::html::{self, HeatMaps, Map};
@@ -60,6 +61,9 @@ pub(crate) struct Args {
     threads: Option<u16>,
 
     #[command(flatten)]
+    build: BuildArgs,
+
+    #[command(flatten)]
     simd: SimdArgs,
 
     #[command(flatten)]
@@ -75,6 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut options = CompareOptions {
         rays: args.rays as usize,
         rounds: args.rounds as usize,
+        build: args.build.preset.options(),
         ..CompareOptions::default()
     };
     if !args.structures.is_empty() {

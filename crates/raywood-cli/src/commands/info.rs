@@ -1,11 +1,11 @@
 //! `raywood info`: what is in a scene, and what its structure is like.
 
 use raywood::{Geometry, SimdLevel, StructureKind, StructureStats};
-use raywood_render::PreparedScene;
 use raywood_scene::{LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
 
 use super::thread_pool;
+use crate::build_args::BuildArgs;
 use crate::exporters;
 use crate::failure::Failure;
 use crate::parse::structure_kind;
@@ -30,6 +30,9 @@ pub(crate) struct Args {
     structure: Option<StructureKind>,
 
     #[command(flatten)]
+    build: BuildArgs,
+
+    #[command(flatten)]
     simd: SimdArgs,
 
     /// Refuse what is otherwise mended with a warning
@@ -48,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let kind = args.structure.unwrap_or_default();
-    let prepare = || PreparedScene::with_structure(&loaded.scene, kind);
+    let prepare = || args.build.prepare(&loaded.scene, kind);
     let prepared = during_step("building the structure", || pool.install(prepare))
         .map_err(Failure::bad_input)?;
     let stats = prepared.structure().stats();

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use raywood::{StructureKind, StructureStats};
-use raywood_render::{HeatQuantity, PreparedScene, RenderOptions, RenderStats};
+use raywood_render::{HeatQuantity, RenderOptions, RenderStats};
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
 use super::thread_pool;
+use crate::build_args::BuildArgs;
 use crate::exporters;
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
@@ -56,6 +57,9 @@ pub(crate) struct Args {
     /// Threads to use, else all cores
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    #[command(flatten)]
+    build: BuildArgs,
 
     #[command(flatten)]
     simd: SimdArgs,
@@ -141,7 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepare = || PreparedScene::with_structure(&scene, kind);
+    let prepare = || args.build.prepare(&scene, kind);
     let prepared = during_step("building the structure", || pool.install(prepare))
         .map_err(Failure::bad_input)?;
     let build = started.elapsed();

@@ -3,7 +3,7 @@
 mod error;
 mod run;
 
-use raywood::{Counts, StructureKind, StructureStats};
+use raywood::{BuildOptions, Counts, StructureKind, StructureStats};
 
 use crate::{RayKind, RaySetSummary, Timing};
 pub use error::CompareError;
@@ -14,6 +14,8 @@ pub use run::{SceneStructure, compare};
 pub struct CompareOptions {
     /// The structures.
     pub kinds: Vec<StructureKind>,
+    /// How they are built.
+    pub build: BuildOptions,
     /// The most rays of each kind.
     pub rays: usize,
     /// How often each set of rays is traced by each structure, at least once.
@@ -23,9 +25,15 @@ pub struct CompareOptions {
 }
 
 impl Default for CompareOptions {
-    /// All structures, 65,536 rays of each kind, seven rounds.
+    /// All structures, built as by default, 65,536 rays of each kind, seven rounds.
     fn default() -> Self {
-        Self { kinds: StructureKind::ALL.to_vec(), rays: 1 << 16, rounds: 7, aspect: 1.6 }
+        Self {
+            kinds: StructureKind::ALL.to_vec(),
+            build: BuildOptions::default(),
+            rays: 1 << 16,
+            rounds: 7,
+            aspect: 1.6,
+        }
     }
 }
 

@@ -39,7 +39,7 @@ pub fn compare<'a>(
         sets.iter().map(|set| answers(reference.structure(), set.kind, &set.rays)).collect();
 
     let surfaces = PreparedScene::surfaces(reference.scene());
-    let (structures, builds) = build(&options.kinds, surfaces, &mut step)?;
+    let (structures, builds) = build(&options.kinds, surfaces, &options.build, &mut step)?;
     let mut reports: Vec<_> = structures
         .iter()
         .zip(builds)
@@ -91,6 +91,7 @@ pub type SceneStructure<'a> = Structure<Surfaces<'a>>;
 fn build<'a>(
     kinds: &[StructureKind],
     surfaces: Surfaces<'a>,
+    options: &BuildOptions,
     step: &mut impl FnMut(&str),
 ) -> Result<(Vec<SceneStructure<'a>>, Vec<Timing>), CompareError> {
     let mut structures: Vec<Option<SceneStructure<'a>>> = vec![None; kinds.len()];
@@ -103,8 +104,7 @@ fn build<'a>(
             step(&format!("building {}", kind.name()));
             // Free the last one's memory first, outside the time that counts.
             structures[number] = None;
-            let options = BuildOptions::default();
-            let (time, built) = seconds(|| Structure::build(kind, surfaces, &options));
+            let (time, built) = seconds(|| Structure::build(kind, surfaces, options));
             structures[number] = Some(built.map_err(|error| CompareError::Build(kind, error))?);
             times[number].push(time);
         }
