@@ -99,7 +99,7 @@ fn the_picture_does_not_depend_on_the_build() {
             format!("render builtin:sphereflake --size 48x30 --build {name} -o {name}.png");
         let output = run(&folder, &arguments);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
-        pictures.push(std::fs::read(folder.join(format!("{name}.png"))).expect("a picture"));
+        pictures.push(fs::read(folder.join(format!("{name}.png"))).expect("a picture"));
     }
     assert!(pictures.iter().all(|picture| *picture == pictures[0]));
     for command in ["info builtin:whitted", "compare builtin:whitted --structures bvh-wide"] {

@@ -6,8 +6,7 @@ use crate::geometry::TriangleBlock;
 use crate::simd::{SimdLevel, dispatch_on};
 use crate::structures::AccelerationStructure;
 use crate::{
-    BuildOptions, BuildPreset, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, TriangleTest,
-    Vec3,
+    BuildOptions, Bvh2, Counts, Hit, Joined, Ray, Spheres, TriangleMesh, TriangleTest, Vec3,
 };
 
 /// Random numbers from -1 to 1.
@@ -192,7 +191,7 @@ fn most_leaves_are_full_and_most_nodes_have_many_children() {
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let things = things(40_000, 100);
-    for preset in BuildPreset::ALL {
+    for preset in crate::BuildPreset::ALL {
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let build = || WideBvh::build(&things, &preset.options()).expect("it builds");
