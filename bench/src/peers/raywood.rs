@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use raywood::{
-    BuildOptions, Bvh, HitColumns, Ray, Structure, StructureKind, TriangleMesh, TriangleTest, Vec3,
+    BuildOptions, HitColumns, Ray, Structure, StructureKind, TriangleMesh, TriangleTest, Vec3,
 };
 
 use super::each_ray::{Batch, EachRay};
@@ -14,13 +14,14 @@ use crate::ray_sets::RaySet;
 
 pub(super) const ENTRY: PeerEntry = PeerEntry {
     name: "raywood",
-    settings: "Bvh::build and bvh-wide, default options (bvh-wide with reinsertion); closest hits with t, u, v and primitive; \
+    settings: "bvh-wide (which Bvh is) and bvh-sah-binned (modes batch and single), default options (bvh-wide with reinsertion); closest hits with t, u, v and primitive; \
         fast modes with the triangle test of Moeller and Trumbore",
     build,
 };
 
 fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
-    let bvh = Bvh::build(mesh).map_err(|error| error.to_string())?;
+    let bvh = Structure::build(StructureKind::BvhSahBinned, mesh, &BuildOptions::default())
+        .map_err(|error| error.to_string())?;
     let wide = |triangle_test: TriangleTest| {
         let options = BuildOptions { triangle_test, ..BuildOptions::default() };
         Structure::build(StructureKind::BvhWide, mesh, &options).map_err(|error| error.to_string())
@@ -30,7 +31,8 @@ fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
 }
 
 struct Raywood<'a> {
-    bvh: Bvh<&'a TriangleMesh>,
+    /// The lecture's binary tree.
+    bvh: Structure<&'a TriangleMesh>,
     wide: Structure<&'a TriangleMesh>,
     /// The same tree with a triangle test that is not watertight.
     fast: Structure<&'a TriangleMesh>,

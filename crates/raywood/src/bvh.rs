@@ -3,11 +3,11 @@
 use crate::parallel;
 use crate::structures::AccelerationStructure;
 use crate::{
-    BuildError, BuildOptions, Bvh2, Geometry, Hit, Probe, Ray, StructureStats, SurfacePoint,
-    ValidationError,
+    BuildError, BuildOptions, Geometry, Hit, HitColumns, Probe, Ray, SimdLevel, StructureStats,
+    SurfacePoint, ValidationError, Vec3, WideBvh,
 };
 
-/// A bounding volume hierarchy over a geometry: what most users need.
+/// A bounding volume hierarchy over a geometry: what most users need. The tree is the one that traces fastest, the [`WideBvh`].
 ///
 /// It owns its geometry, or borrows it when built over a reference:
 ///
@@ -25,8 +25,8 @@ use crate::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct Bvh<G> {
-    geometry: G,
-    tree: Bvh2,
+    pub(crate) geometry: G,
+    pub(crate) tree: WideBvh,
 }
 
 impl<G: Geometry> Bvh<G> {
@@ -46,7 +46,7 @@ impl<G: Geometry> Bvh<G> {
     ///
     /// As [`build`](Self::build).
     pub fn build_with(geometry: G, options: &BuildOptions) -> Result<Self, BuildError> {
-        let tree = Bvh2::build(&geometry, options)?;
+        let tree = WideBvh::build(&geometry, options)?;
         Ok(Self { geometry, tree })
     }
 
@@ -56,8 +56,19 @@ impl<G: Geometry> Bvh<G> {
     }
 
     /// The tree.
-    pub fn tree(&self) -> &Bvh2 {
+    pub fn tree(&self) -> &WideBvh {
         &self.tree
+    }
+
+    /// The vector instructions that trace it.
+    pub fn simd_level(&self) -> SimdLevel {
+        self.tree.level()
+    }
+
+    /// Has other vector instructions trace it than the [active](SimdLevel::active) ones: for measuring and testing. A level that the processor lacks
+    /// counts as portable. The tree stays the same.
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.tree.set_simd_level(level);
     }
 
     /// The closest hit at `t_min <= t < t_max`; of equally near ones that with the lowest primitive number.
@@ -85,24 +96,55 @@ impl<G: Geometry> Bvh<G> {
         self.tree.occluded(&self.geometry, ray, probe)
     }
 
-    /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool. Answers as the single form does.
+    /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool. Several times as fast as one by one: rays that lie close together
+    /// and share an origin travel as packets, all others many at a time. Pass hundreds at least.
+    ///
+    /// Hits are those of the single form, but `t`, `u` and `v` of packets may differ in the last digits (`docs/numerics.md`, "Packets").
     ///
     /// # Panics
     ///
     /// If the two slices differ in length.
     pub fn intersect_batch(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "as many hits as rays");
-        parallel::fill(rays, hits, |ray| self.intersect(ray));
+        parallel::fill_pieces(rays, hits, |rays, hits| {
+            self.tree.intersect_batch(&self.geometry, rays, hits);
+        });
     }
 
-    /// [`occluded`](Self::occluded) for many rays, over all cores of the caller's rayon pool. Answers as the single form does.
+    /// [`occluded`](Self::occluded) for many rays, over all cores of the caller's rayon pool, as [`intersect_batch`](Self::intersect_batch). Answers as the single
+    /// form does.
     ///
     /// # Panics
     ///
     /// If the two slices differ in length.
     pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
-        parallel::fill(rays, occluded, |ray| self.occluded(ray));
+        parallel::fill_pieces(rays, occluded, |rays, occluded| {
+            self.tree.occluded_batch(&self.geometry, rays, occluded);
+        });
+    }
+
+    /// The closest hits of rays from one point, as a camera has them, over all cores of the caller's rayon pool. `hits` gets as many places as there are
+    /// directions. The fastest way for such rays, best in tiles of 16 times 16 pixels: see [`Structure::intersect_from`](crate::Structure::intersect_from).
+    pub fn intersect_from(&self, origin: Vec3, directions: &[Vec3], hits: &mut HitColumns) {
+        hits.resize(directions.len());
+        parallel::fill_columns(directions, hits.as_mut(), &|directions, hits| {
+            self.tree.intersect_from(&self.geometry, origin, directions, hits);
+        });
+    }
+
+    /// Whether anything lies between each point and `target`, such as a small light, over all cores of the caller's rayon pool: the same as of
+    /// [`occluded_batch`](Self::occluded_batch) for `Ray::between(point, target)` that ends at the share `end` of its way. See
+    /// [`Structure::occluded_towards`](crate::Structure::occluded_towards).
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_towards(&self, target: Vec3, end: f32, points: &[Vec3], occluded: &mut [bool]) {
+        assert_eq!(points.len(), occluded.len(), "as many answers as points");
+        parallel::fill_pieces(points, occluded, |points, occluded| {
+            self.tree.occluded_towards(&self.geometry, (target, end), points, occluded);
+        });
     }
 
     /// The point that a ray hit, from which the next ray can be spawned. `hit` must be this tree's answer to `ray`.

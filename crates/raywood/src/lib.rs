@@ -19,9 +19,9 @@
 //!
 //! - [`TriangleMesh`] and [`Spheres`] are geometry, your own types can be through [`Geometry`], and [`Joined`] puts two kinds
 //!   into one tree.
-//! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores.
-//! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]; its default, the [`WideBvh`], is traced by vector
-//!   instructions ([`SimdLevel`]) and the fastest for slices of rays.
+//! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores. Its tree, the [`WideBvh`], is traced by vector instructions
+//!   ([`SimdLevel`]).
+//! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
 //!

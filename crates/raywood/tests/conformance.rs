@@ -8,7 +8,7 @@ fn options() -> Vec<BuildOptions> {
     let default = BuildOptions::default();
     vec![
         default.clone(),
-        BuildOptions { max_leaf_size: 1, ..default.clone() },
+        BuildOptions { max_leaf_size: 1, wide_leaf_size: 1, ..default.clone() },
         BuildOptions { bins: 3, max_leaf_size: 64, primitive_cost: 0.01, ..default },
     ]
 }

@@ -1,7 +1,7 @@
 //! The invariants of trees: any input, any number of threads.
 
 use raywood::{
-    Aabb, BuildError, BuildOptions, BuildPreset, Bvh, Counts, Geometry, Hit, Ray, Structure,
+    Aabb, BuildError, BuildOptions, BuildPreset, Bvh2, Counts, Geometry, Hit, Ray, Structure,
     StructureKind, TriangleMesh, Vec3,
 };
 use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
@@ -26,8 +26,16 @@ impl Geometry for Boxes {
     }
 }
 
-fn build(boxes: Vec<Aabb>) -> Bvh<Boxes> {
-    let bvh = Bvh::build(Boxes(boxes)).expect("it builds");
+/// The binary tree, which shows its builder.
+fn binary<G: Geometry>(geometry: G, options: &BuildOptions) -> Structure<G> {
+    Structure::build(StructureKind::BvhSahBinned, geometry, options).expect("it builds")
+}
+
+fn build(boxes: Vec<Aabb>) -> Structure<Boxes> {
+    let wide = Structure::build(StructureKind::BvhWide, Boxes(boxes), &Default::default());
+    let wide = wide.expect("it builds");
+    wide.validate().expect("a valid wide tree");
+    let bvh = binary(Boxes(wide.geometry().0.clone()), &Default::default());
     bvh.validate().expect("a valid tree");
     bvh
 }
@@ -36,7 +44,7 @@ fn build(boxes: Vec<Aabb>) -> Bvh<Boxes> {
 fn every_mesh_gives_a_valid_tree() {
     for nasty in nasty::all() {
         let n = nasty.mesh.len();
-        let bvh = Bvh::build(&nasty.mesh).expect("it builds");
+        let bvh = binary(&nasty.mesh, &Default::default());
         bvh.validate().unwrap_or_else(|error| panic!("{}: {error}", nasty.name));
         let stats = bvh.stats();
         assert_eq!(stats.primitives, n, "{}", nasty.name);
@@ -48,7 +56,8 @@ fn every_mesh_gives_a_valid_tree() {
             nasty.name
         );
         assert!(stats.q.is_finite(), "{}: {stats}", nasty.name);
-        assert_eq!(bvh.tree().bounds(), nasty.mesh.total_bounds(), "{}", nasty.name);
+        let tree = Bvh2::build(&nasty.mesh, &BuildOptions::default()).expect("it builds");
+        assert_eq!(tree.bounds(), nasty.mesh.total_bounds(), "{}", nasty.name);
     }
 }
 
@@ -94,7 +103,7 @@ fn leaves_follow_the_options() {
     let mesh = shapes::soup(3000, 0.05, 1);
     for max_leaf_size in [1, 2, 5] {
         let options = BuildOptions { max_leaf_size, ..Default::default() };
-        let bvh = Bvh::build_with(&mesh, &options).expect("it builds");
+        let bvh = binary(&mesh, &options);
         bvh.validate().expect("a valid tree");
         assert!(bvh.stats().max_leaf_primitives <= max_leaf_size);
     }
@@ -106,7 +115,7 @@ fn leaves_follow_the_options() {
         primitive_cost: -1.0,
         ..Default::default()
     };
-    Bvh::build_with(&mesh, &options).expect("it builds").validate().expect("a valid tree");
+    binary(&mesh, &options).validate().expect("a valid tree");
     let options = BuildOptions {
         bins: usize::MAX,
         max_leaf_size: usize::MAX,
@@ -114,15 +123,15 @@ fn leaves_follow_the_options() {
         primitive_cost: 1e-30,
         ..Default::default()
     };
-    assert_eq!(Bvh::build_with(&mesh, &options).expect("it builds").stats().nodes, 1);
+    assert_eq!(binary(&mesh, &options).stats().nodes, 1);
 }
 
 #[test]
 fn splits_lower_the_expected_cost() {
     let mesh = shapes::uv_sphere(60, Vec3::ZERO, 1.0);
-    let tree = Bvh::build(&mesh).expect("it builds").stats();
+    let tree = binary(&mesh, &Default::default()).stats();
     let options = BuildOptions { max_leaf_size: usize::MAX, node_cost: 1e30, ..Default::default() };
-    let leaf = Bvh::build_with(&mesh, &options).expect("it builds").stats();
+    let leaf = binary(&mesh, &options).stats();
     assert_eq!(leaf.q, 1.0 + mesh.len() as f64);
     assert!(tree.q < 0.01 * leaf.q, "{tree}");
 }
@@ -132,9 +141,9 @@ fn splits_lower_the_expected_cost() {
 fn the_same_tree_for_any_number_of_threads() {
     // Several pieces of the sets that are divided by all threads, and a last one that is not full.
     let mesh = shapes::soup(150_001, 0.02, 2);
-    let build = |threads| -> raywood::Bvh2 {
+    let build = |threads| -> Bvh2 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| raywood::Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
+        pool.install(|| Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
     };
     let one = build(1);
     for threads in [2, 3, 8] {
@@ -152,9 +161,13 @@ fn bad_bounds_are_refused() {
         Aabb::new([f32::NEG_INFINITY; 3], [1.0; 3]),
         Aabb::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]),
     ] {
-        let error = Bvh::build(Boxes(vec![good, good, bad, good])).expect_err("it is refused");
-        assert!(matches!(error, BuildError::BadBounds { primitive: 2, .. }), "{error}");
-        assert!(error.to_string().starts_with("primitive 2 has the bounds"), "{error}");
+        for &kind in StructureKind::ALL {
+            let boxes = Boxes(vec![good, good, bad, good]);
+            let error = Structure::build(kind, boxes, &Default::default());
+            let error = error.map(|_| ()).expect_err("it is refused");
+            assert!(matches!(error, BuildError::BadBounds { primitive: 2, .. }), "{error}");
+            assert!(error.to_string().starts_with("primitive 2 has the bounds"), "{error}");
+        }
     }
 }
 
@@ -183,7 +196,7 @@ fn bad_meshes_are_refused() {
 fn the_probe_counts_what_is_tested() {
     let mesh = shapes::soup(500, 0.1, 3);
     let whole = BuildOptions { max_leaf_size: usize::MAX, node_cost: 1e30, ..Default::default() };
-    let leaf = Bvh::build_with(&mesh, &whole).expect("it builds");
+    let leaf = binary(&mesh, &whole);
     let through = Ray::new([-5.0, 0.1, 0.2], [1.0, 0.0, 0.0]);
     let beside = Ray::new([-5.0, 9.0, 0.2], [1.0, 0.0, 0.0]);
 
@@ -197,7 +210,7 @@ fn the_probe_counts_what_is_tested() {
     assert_eq!(counts, Counts { nodes: 1, boxes: 3, primitives: 500 });
 
     // A tree: boxes in pairs below the root's, and far fewer triangles; the same answer as without a probe.
-    let tree = Bvh::build(&mesh).expect("it builds");
+    let tree = binary(&mesh, &Default::default());
     let mut counts = Counts::default();
     assert_eq!(tree.intersect_probed(&through, &mut counts), leaf.intersect(&through));
     assert!(counts.boxes % 2 == 1 && counts.boxes > 1, "{counts:?}");

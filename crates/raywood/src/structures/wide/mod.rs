@@ -66,6 +66,11 @@ impl WideBvh {
         self.bounds
     }
 
+    /// The vector instructions that trace it.
+    pub(crate) fn level(&self) -> SimdLevel {
+        self.level
+    }
+
     /// The node that a reference to a node means.
     #[inline(always)]
     fn node(&self, reference: Reference) -> &WideNode {

@@ -138,5 +138,6 @@ fn largest(v: Vec3) -> f32 {
 /// of the allowance is for what the keys lost on the stack.
 #[inline(always)]
 pub(super) fn end_of_keys(far: f32) -> f32 {
-    far + far.abs() * (2.0 * SLACK)
+    // The lane in the last digits of a key makes zero a little more than zero.
+    far + (far.abs() * (2.0 * SLACK) + f32::MIN_POSITIVE)
 }
