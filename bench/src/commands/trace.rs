@@ -63,6 +63,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = peer)]
     peers: Vec<&'static str>,
 
+    /// Which of the kernels' modes, by the names in the table, separated by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    modes: Vec<String>,
+
     /// On how many threads, one number or several
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', default_value = "1")]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -229,7 +233,14 @@ fn run_scene(
             .flat_map(|(peer, trees)| {
                 trees.modes().into_iter().map(|mode| Contestant { peer: peer.name, mode })
             })
+            .filter(|contestant| {
+                args.modes.is_empty() || args.modes.iter().any(|name| name == contestant.mode.name)
+            })
             .collect();
+        if contestants.is_empty() && !args.modes.is_empty() {
+            let why = format!("no kernel has a mode named {}", args.modes.join(" or "));
+            return Err(Failure::BadInput(why));
+        }
         let rounds = usize::from(args.rounds);
         for mut measurement in measure(name, set, &expected, &contestants, pools, rounds) {
             for (peer, trees) in &built {
