@@ -254,6 +254,11 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
+    fn load_two(self, low: &[f32; 8], high: &[f32; 8]) -> F16 {
+        F16([self.load8(low), self.load8(high)])
+    }
+
+    #[inline(always)]
     fn prefetch(self, start: *const u8) {
         prefetch(start);
     }

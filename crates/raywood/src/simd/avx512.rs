@@ -197,6 +197,15 @@ impl Simd for Avx512 {
     }
 
     #[inline(always)]
+    fn load_two(self, low: &[f32; 8], high: &[f32; 8]) -> F16 {
+        // SAFETY: the token; twice eight numbers can be read.
+        unsafe {
+            let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
+            F16(_mm512_insertf32x8::<1>(low, _mm256_loadu_ps(high.as_ptr())))
+        }
+    }
+
+    #[inline(always)]
     fn vector_columns(self, vectors: &[Vec3; 16]) -> [F16; 3] {
         /// Which lanes a coordinate's numbers come from: of the first two registers, which count as one, and of the third.
         const fn lanes(coordinate: usize) -> ([i32; 16], [i32; 16], u16) {

@@ -79,6 +79,15 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
 
+    /// Twice eight numbers from memory.
+    #[inline(always)]
+    fn load_two(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F16 {
+        let mut numbers = [0.0; 16];
+        numbers[..8].copy_from_slice(low);
+        numbers[8..].copy_from_slice(high);
+        self.load16(&numbers)
+    }
+
     /// The columns of sixteen rows.
     #[inline(always)]
     fn columns(self, rows: &[[f32; 8]; 16]) -> [Self::F16; 8] {

@@ -54,17 +54,23 @@ impl Frame {
         ]
     }
 
-    /// The corners of one number of the triangles of a block, seen in this frame.
+    /// The corners of one number of the triangles of two blocks, seen in this frame.
     #[inline(always)]
     pub(super) fn corners<S: Simd>(
         &self,
         simd: S,
-        block: &TriangleBlock,
+        [first, second]: [&TriangleBlock; 2],
         number: usize,
-    ) -> [S::F8; 3] {
-        let x = simd.load8(block.coordinates(number, self.axes[0])) - simd.splat8(self.origin[0]);
-        let y = simd.load8(block.coordinates(number, self.axes[1])) - simd.splat8(self.origin[1]);
-        let z = simd.load8(block.coordinates(number, self.axes[2])) - simd.splat8(self.origin[2]);
-        [x, y, z * simd.splat8(self.sign)]
+    ) -> [S::F16; 3] {
+        let [x, y, z] = self.axes;
+        let x = simd.load_two(first.coordinates(number, x), second.coordinates(number, x));
+        let y = simd.load_two(first.coordinates(number, y), second.coordinates(number, y));
+        let z = simd.load_two(first.coordinates(number, z), second.coordinates(number, z));
+        let origin = self.origin;
+        [
+            x - simd.splat16(origin[0]),
+            y - simd.splat16(origin[1]),
+            (z - simd.splat16(origin[2])) * simd.splat16(self.sign),
+        ]
     }
 }

@@ -172,9 +172,11 @@ impl Packet {
         self.start = 1.0 / latest.greatest();
         self.numbers = NUMBERS;
         self.measure(simd);
-        self.is_sorted = count >= FEWEST && self.is_scattered(simd);
-        if self.is_sorted {
-            self.sort(simd);
+        let scattered = self.scattered(simd);
+        let is_sorted = count >= FEWEST && scattered.count_ones() > 1;
+        self.sorted = if is_sorted { scattered } else { 0 };
+        if is_sorted {
+            self.sort(simd, scattered);
             self.measure(simd);
         }
         self.groups.live != 0

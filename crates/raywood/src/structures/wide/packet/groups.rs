@@ -5,6 +5,9 @@ use crate::simd::{Float, Simd};
 /// By how much of itself the far end of an interval of depths is lengthened against rounding: every depth is off by five roundings at most.
 const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
+/// The relative error of halves of sums and differences, with room to spare.
+const HALVING_ERROR: f32 = 2.0 * f32::EPSILON;
+
 /// What the rays of each group have in common, a group a lane.
 ///
 /// The rays of a group lie in an axis-aligned pyramid. For which depths it overlaps a box is a matter of four products: of each side of the box with
@@ -16,6 +19,10 @@ pub(super) struct Groups {
     pub(super) slopes: [[[f32; 16]; 2]; 2],
     /// Their reciprocals.
     reciprocals: [[[f32; 16]; 2]; 2],
+    /// Halfway between the slopes, and no less than how far these are from there, by axis.
+    pub(super) centers: [[f32; 16]; 2],
+    /// See `centers`.
+    pub(super) extents: [[f32; 16]; 2],
     /// The least of one over the depth of what the rays have found, or of their ends.
     pub(super) least: [f32; 16],
     /// The depth beyond which nothing counts for any ray of the group.
@@ -25,6 +32,8 @@ pub(super) struct Groups {
     /// The same for the packet as a whole: slopes, their reciprocals, the farthest depth that counts.
     pub(super) whole: [[f32; 2]; 2],
     whole_reciprocals: [[f32; 2]; 2],
+    pub(super) whole_center: [f32; 2],
+    pub(super) whole_extent: [f32; 2],
     /// The groups that have rays for which anything still counts.
     pub(super) live: u32,
 }
@@ -34,11 +43,15 @@ impl Groups {
     pub(super) const NONE: Self = Self {
         slopes: [[[f32::INFINITY; 16], [f32::NEG_INFINITY; 16]]; 2],
         reciprocals: [[[0.0; 16]; 2]; 2],
+        centers: [[0.0; 16]; 2],
+        extents: [[0.0; 16]; 2],
         least: [f32::INFINITY; 16],
         far: [0.0; 16],
         positive: [[0; 2]; 2],
         whole: [[f32::INFINITY, f32::NEG_INFINITY]; 2],
         whole_reciprocals: [[0.0; 2]; 2],
+        whole_center: [0.0; 2],
+        whole_extent: [0.0; 2],
         live: 0,
     };
 
@@ -56,6 +69,18 @@ impl Groups {
                 self.whole[axis][side] = whole;
                 self.whole_reciprocals[axis][side] = 1.0 / whole;
             }
+            let [low, high] = &self.slopes[axis];
+            let (low, high) = (simd.load16(low), simd.load16(high));
+            let half = simd.splat16(0.5);
+            let center = (low + high) * half;
+            let extent = (high - low).mul_add(half, center.abs() * simd.splat16(HALVING_ERROR));
+            self.centers[axis] = center.to_array();
+            self.extents[axis] = (extent * simd.splat16(1.0 + HALVING_ERROR)).to_array();
+            let [low, high] = self.whole[axis];
+            let center = 0.5 * (low + high);
+            self.whole_center[axis] = center;
+            self.whole_extent[axis] =
+                (0.5 * (high - low) + center.abs() * HALVING_ERROR) * (1.0 + HALVING_ERROR);
         }
     }
 

@@ -16,14 +16,15 @@ use super::WideBvh;
 use super::node::{Reference, WIDTH};
 use super::sink::{Sink, SixteenHits};
 use super::source::Source;
-use super::step::others;
+use super::step;
+use crate::geometry::LANES;
 use crate::simd::{Float, Simd};
 use crate::traverse::nearest::hit as hit_one;
 use crate::{Geometry, Hit, HitColumns, PreparedRay};
 use frame::Frame;
 use groups::Groups;
 use leaving::Plane;
-use triangles::{GREATEST_VOLUME, Triangles};
+use triangles::{GREATEST_VOLUME, TRIANGLES, Triangles};
 
 /// How many rays a packet has at most.
 pub(super) const RAYS: usize = 256;
@@ -50,8 +51,8 @@ pub(super) struct Packet {
     start: f32,
     /// Whether any ray ends.
     is_bounded: bool,
-    /// Whether rays are in another order than in the slice.
-    is_sorted: bool,
+    /// The groups whose rays are others than in the slice.
+    sorted: u32,
     /// Which ray of the slice each one is.
     numbers: [[u8; GROUP]; GROUP],
     /// How many triangles each group was tested against.
@@ -60,7 +61,20 @@ pub(super) struct Packet {
     alone: [u32; GROUP],
     /// The rays of each group that are in the packet.
     members: [u32; GROUP],
+    /// Triangles of two leaves with groups that may hit them, from place 1 on; each as 16 times the triangle's lane and the group.
+    pairs: [u32; 1 + (TRIANGLES + 1) * GROUP],
 }
+
+/// The pairs of each triangle of two leaves with every group.
+const PAIRS: [[u32; GROUP]; TRIANGLES] = {
+    let mut pairs = [[0; GROUP]; TRIANGLES];
+    let mut pair = 0;
+    while pair < TRIANGLES * GROUP {
+        pairs[pair / GROUP][pair % GROUP] = pair as u32;
+        pair += 1;
+    }
+    pairs
+};
 
 /// Depths with a larger relative error are not trusted: the triangle test of single rays decides.
 const TOLERANCE: f32 = 1.0 / 4096.0;
@@ -85,6 +99,14 @@ struct Item {
     groups: u32,
     /// From which depth on the packet is in its box.
     near: f32,
+}
+
+/// A leaf that is visited.
+#[derive(Clone, Copy)]
+struct Leaf {
+    reference: Reference,
+    /// The groups that meet its box.
+    groups: u32,
 }
 
 /// Rays for a packet, and what they are sent through.
@@ -157,11 +179,12 @@ impl Packet {
             frame: Frame::new(crate::Vec3::ZERO, 0.0, crate::Vec3::ZERO),
             start: f32::INFINITY,
             is_bounded: false,
-            is_sorted: false,
+            sorted: 0,
             numbers: [[0; GROUP]; GROUP],
             work: [0.0; GROUP],
             alone: [0; GROUP],
             members: [0; GROUP],
+            pairs: [0; 1 + (TRIANGLES + 1) * GROUP],
         }
     }
 
@@ -188,7 +211,15 @@ impl Packet {
                 continue;
             }
             if reference.is_leaf() {
-                self.visit_leaf::<S, G, R, ANY, FAST>(simd, piece, reference, groups);
+                // With the next one, if that is a leaf as well: the work on sixteen triangles is that on one.
+                let mut leaves = [Leaf { reference, groups }, Leaf { reference, groups: 0 }];
+                if top > 0 && stack[top - 1].reference.is_leaf() {
+                    top -= 1;
+                    let Item { reference, groups, near } = stack[top];
+                    let groups = groups & self.groups.reaching(simd, near);
+                    leaves[1] = Leaf { reference, groups };
+                }
+                self.visit_leaves::<S, G, R, ANY, FAST>(simd, piece, leaves);
             } else {
                 top += self.enter_node(simd, piece.tree, reference, groups, &mut stack[top..]);
             }
@@ -244,54 +275,61 @@ impl Packet {
         count
     }
 
-    /// Tests the primitives of a leaf against the rays of some groups.
+    /// Tests the primitives of two leaves against the rays of some groups each.
     #[inline(always)]
-    fn visit_leaf<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
+    fn visit_leaves<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
         &mut self,
         simd: S,
         piece: &Piece<'_, G, R>,
-        leaf: Reference,
-        groups: u32,
+        leaves: [Leaf; 2],
     ) {
-        let block = piece.tree.block(leaf);
-        let others = others(piece.geometry, &block.primitives, leaf);
+        let [first, second] = leaves;
+        let blocks = [piece.tree.block(first.reference), piece.tree.block(second.reference)];
+        let mut lanes = 0;
+        let mut others = 0;
+        for (place, leaf) in leaves.iter().enumerate() {
+            if leaf.groups != 0 {
+                let here = step::others(piece.geometry, &blocks[place].primitives, leaf.reference);
+                others |= here << (place * LANES);
+                lanes |= (leaf.reference.lanes() & !here) << (place * LANES);
+            }
+        }
         let tolerance = if ANY { LARGE_TOLERANCE } else { TOLERANCE };
-        let triangles = Triangles::new(
-            simd,
-            block,
-            leaf.lanes() & !others,
-            &self.frame,
-            &self.groups,
-            tolerance,
-        );
-        let mut touched = 0;
+        let triangles = Triangles::new(simd, blocks, lanes, &self.frame, &self.groups, tolerance);
+
+        // Which groups may hit which triangles: first all pairs, then one loop over them, so that the processor foresees its end.
         let mut work = simd.load16(&self.work);
+        let mut count = 0;
         let mut left = triangles.possible & !triangles.unknown;
         while left != 0 {
-            let lane = left.trailing_zeros() as usize;
+            let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
-            let meeting = triangles.groups(simd, lane, &self.groups) & groups;
-            touched |= meeting;
+            let meeting = triangles.groups(simd, lane, &self.groups) & leaves[lane / LANES].groups;
             work = work.replaced(meeting, work + simd.splat16(1.0));
-            let primitive = f32::from_bits(block.primitives[lane]);
-            let mut left = meeting;
-            while left != 0 {
-                let group = left.trailing_zeros() as usize;
-                left &= left - 1;
-                let doubtful =
-                    self.test::<S, ANY, FAST>(simd, &triangles, lane, group % GROUP, primitive);
-                if doubtful != 0 {
-                    self.settle::<G, R, ANY>(piece, leaf, lane, group, doubtful);
-                }
+            count += simd.push_chosen(meeting, &PAIRS[lane], &mut self.pairs, 1 + count).0;
+        }
+        let mut touched = 0;
+        for place in 1..=count {
+            let pair = self.pairs[place] as usize;
+            let (lane, group) = (pair / GROUP % TRIANGLES, pair % GROUP);
+            let primitive = f32::from_bits(blocks[lane / LANES].primitives[lane % LANES]);
+            let (hit, doubtful) =
+                self.test::<S, ANY, FAST>(simd, &triangles, lane, group, primitive);
+            touched |= u32::from(hit | doubtful != 0) << group;
+            if doubtful != 0 {
+                let leaf = leaves[lane / LANES].reference;
+                self.settle::<G, R, ANY>(piece, leaf, lane % LANES, group, doubtful);
             }
         }
         let mut left = if FAST { others } else { others | triangles.possible & triangles.unknown };
         while left != 0 {
-            let lane = left.trailing_zeros() as usize;
+            let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
+            let Leaf { reference, groups } = leaves[lane / LANES];
             touched |= groups;
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
-                self.settle::<G, R, ANY>(piece, leaf, lane, group, self.members[group]);
+                let members = self.members[group];
+                self.settle::<G, R, ANY>(piece, reference, lane % LANES, group, members);
             }
         }
 
@@ -325,7 +363,7 @@ impl Packet {
         lane: usize,
         group: usize,
         primitive: f32,
-    ) -> u32 {
+    ) -> (u32, u32) {
         let x = simd.load16(&self.slopes[0][group]);
         let y = simd.load16(&self.slopes[1][group]);
         let edge_a = triangles.function(simd, 0, lane, x, y);
@@ -354,15 +392,16 @@ impl Packet {
                 & nearest.less(less)
                 & more.less(simd.splat16(self.start));
             let blocked = simd.splat16(f32::INFINITY);
-            self.nearest[group] = nearest.replaced(possible & certain, blocked).to_array();
-            return possible & !certain;
+            let hit = possible & certain;
+            self.nearest[group] = nearest.replaced(hit, blocked).to_array();
+            return (hit, possible & !certain);
         }
         let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
         let doubtful = possible & !simd.splat16(certainly).less(least);
         let hit = possible & !doubtful;
 
         self.take(simd, hit, depth, [edge_b, edge_c], group, primitive);
-        doubtful
+        (hit, doubtful)
     }
 
     /// Takes what is hit as far as rounding allows to tell.
@@ -375,7 +414,7 @@ impl Packet {
         weights: [S::F16; 2],
         (group, primitive): (usize, f32),
         error: f32,
-    ) -> u32 {
+    ) -> (u32, u32) {
         let nearest = simd.load16(&self.nearest[group]);
         if ANY {
             // Seen from the light triangles are small, and at silhouettes rounding tells by some millionths wrongly which rays are in shadow.
@@ -386,11 +425,11 @@ impl Packet {
             let hit = likely.less(least) & before;
             let blocked = simd.splat16(f32::INFINITY);
             self.nearest[group] = nearest.replaced(hit, blocked).to_array();
-            return possible & !hit;
+            return (hit, possible & !hit);
         }
-        let inside = simd.splat16(0.0).less_or_equal(least);
-        self.take(simd, inside & nearest.less(depth), depth, weights, group, primitive);
-        0
+        let hit = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
+        self.take(simd, hit, depth, weights, group, primitive);
+        (hit, 0)
     }
 
     /// Takes hits that are nearer than what the rays have.
@@ -489,7 +528,7 @@ impl Packet {
                 primitives: self.primitives[group],
                 hit: zero.less(nearest),
             };
-            if self.is_sorted || self.is_bounded {
+            if self.sorted >> group & 1 == 1 || self.is_bounded {
                 let numbers = [found.t.to_array(), found.u.to_array(), found.v.to_array()];
                 self.finish_apart(rays, group, numbers, hits, (rest, first));
             } else {
@@ -540,8 +579,9 @@ impl Packet {
         for group in 0..occluded.len().div_ceil(GROUP) {
             let found = blocked.less_or_equal(simd.load16(&self.nearest[group]));
             let found = found & self.members[group];
-            let answers = &mut occluded[if self.is_sorted { 0 } else { group * GROUP }..];
-            if let (false, Some(answers)) = (self.is_sorted, answers.first_chunk_mut::<GROUP>()) {
+            let is_sorted = self.sorted >> group & 1 == 1;
+            let answers = occluded[group * GROUP..].first_chunk_mut::<GROUP>();
+            if let (false, Some(answers)) = (is_sorted, answers) {
                 *answers = truths(found);
             } else {
                 for (lane, number) in self.numbers[group].iter().enumerate() {

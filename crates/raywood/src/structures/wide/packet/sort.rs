@@ -3,7 +3,7 @@
 //! Rays to a light come in the order of the pixels that they belong to; where a picture has depth edges a group's rays are far apart as seen from the
 //! light. One such group meets more boxes than all others together.
 
-use super::{GROUP, Packet, RAYS};
+use super::{GROUP, Packet};
 use crate::simd::{Float, Simd};
 
 /// Cells a side of the grid that rays are sorted into.
@@ -29,28 +29,35 @@ const SPREAD: [u8; CELLS] = [
     0b01_01_01_01,
 ];
 
+/// Groups wider than this share of the packet along an axis are sorted. Were all of them equal squares, they would be a quarter as wide.
+const WIDE: f32 = 0.3;
+
 impl Packet {
-    /// Whether some group is so wide that sorting helps: more than half as wide as the packet.
+    /// The groups that are so wide that sorting helps.
     #[inline(always)]
-    pub(super) fn is_scattered<S: Simd>(&self, simd: S) -> bool {
+    pub(super) fn scattered<S: Simd>(&self, simd: S) -> u32 {
         let mut scattered = 0;
         for axis in 0..2 {
             let [low, high] = &self.groups.slopes[axis];
             let [least, most] = self.groups.whole[axis];
             let width = simd.load16(high) - simd.load16(low);
-            scattered |= simd.splat16(0.5 * (most - least)).less(width);
+            scattered |= simd.splat16(WIDE * (most - least)).less(width);
         }
-        scattered & self.groups.live != 0
+        scattered & self.groups.live
     }
 
-    /// Sorts the rays by the cells of a grid over the packet, in Morton's order; those that are not in the packet come last.
+    /// Sorts the rays of some groups by the cells of a grid over the packet, in Morton's order; those that are not in the packet come last.
     #[inline(always)]
-    pub(super) fn sort<S: Simd>(&mut self, simd: S) {
-        // Each ray's cell, and how many rays each cell has.
+    pub(super) fn sort<S: Simd>(&mut self, simd: S, groups: u32) {
+        // Each ray's cell.
         let [x, y] = self.groups.whole;
+        let mut sorted = [0u8; GROUP];
         let mut cells = [[0u16; GROUP]; GROUP];
-        let mut starts = [0u16; CELLS * CELLS + 1];
-        for (group, cells) in cells.iter_mut().enumerate() {
+        let (mut left, mut count) = (groups, 0);
+        while left != 0 {
+            let group = left.trailing_zeros() as usize % GROUP;
+            left &= left - 1;
+            sorted[count % GROUP] = group as u8;
             let across = cell_coordinates(simd, &self.slopes[0][group], x);
             let along = cell_coordinates(simd, &self.slopes[1][group], y);
             for lane in 0..GROUP {
@@ -60,33 +67,45 @@ impl Packet {
                 );
                 let is_member = self.members[group] >> lane & 1 == 1;
                 let cell = if is_member { u16::from(x | y << 1) } else { 256 };
-                cells[lane] = cell;
-                starts[cell as usize] += 1;
+                cells[count % GROUP][lane] = cell;
+            }
+            count += 1;
+        }
+        let (sorted, cells) = (&sorted[..count], &cells[..count]);
+
+        // How many rays each cell has. Neighbours tend to be in the same cell, and one counter would wait for itself: so one ray of each group after the other.
+        let mut starts = [0u16; CELLS * CELLS + 1];
+        for lane in 0..GROUP {
+            for cells in cells {
+                starts[usize::from(cells[lane])] += 1;
             }
         }
         let mut sum = 0;
         for start in &mut starts {
             sum += std::mem::replace(start, sum);
         }
+        let members = u32::from(starts[CELLS * CELLS]);
 
         // Bring everything into the new order.
         let (slopes, nearest, scales) = (self.slopes, self.nearest, self.scales);
-        let mut count = 0;
-        for (number, &cell) in cells.as_flattened().iter().enumerate() {
-            let place = starts[cell as usize];
-            starts[cell as usize] += 1;
-            count += u32::from(cell < 256);
-            let (from, place) = (number % RAYS, usize::from(place) % RAYS);
-            self.numbers.as_flattened_mut()[place] = from as u8;
-            for (to, slopes) in self.slopes.iter_mut().zip(&slopes) {
-                to.as_flattened_mut()[place] = slopes.as_flattened()[from];
+        for lane in 0..GROUP {
+            for (cells, &group) in cells.iter().zip(sorted) {
+                let start = &mut starts[usize::from(cells[lane])];
+                let place = usize::from(*start);
+                *start += 1;
+                let from = usize::from(group) % GROUP;
+                let (to, place) = (usize::from(sorted[place / GROUP]) % GROUP, place % GROUP);
+                self.numbers[to][place] = (from * GROUP + lane) as u8;
+                for axis in 0..2 {
+                    self.slopes[axis][to][place] = slopes[axis][from][lane];
+                }
+                self.nearest[to][place] = nearest[from][lane];
+                self.scales[to][place] = scales[from][lane];
             }
-            self.nearest.as_flattened_mut()[place] = nearest.as_flattened()[from];
-            self.scales.as_flattened_mut()[place] = scales.as_flattened()[from];
         }
-        for (group, members) in self.members.iter_mut().enumerate() {
-            let here = count.saturating_sub((group * GROUP) as u32).min(GROUP as u32);
-            *members = (1 << here) - 1;
+        for (number, &group) in sorted.iter().enumerate() {
+            let here = members.saturating_sub((number * GROUP) as u32).min(GROUP as u32);
+            self.members[usize::from(group) % GROUP] = (1 << here) - 1;
         }
     }
 }

@@ -1,12 +1,15 @@
-//! The triangles of a leaf as a packet sees them: everything that does not depend on the single ray.
+//! The triangles of two leaves as a packet sees them: everything that does not depend on the single ray.
 //!
 //! For rays through one point an edge function is linear in the ray's slopes, and so is one over the depth of the hit. So the work on a triangle is
-//! done once, for eight triangles at a time, and what is left for a ray are four linear functions.
+//! done once, for sixteen triangles at a time, and what is left for a ray are four linear functions.
 
 use super::frame::Frame;
 use super::groups::Groups;
-use crate::geometry::TriangleBlock;
+use crate::geometry::{LANES, TriangleBlock};
 use crate::simd::{Float, Simd};
+
+/// How many triangles are looked at together.
+pub(super) const TRIANGLES: usize = 2 * LANES;
 
 /// One rounding.
 const ROUNDING: f32 = f32::EPSILON / 2.0;
@@ -25,27 +28,27 @@ const LEAST_VOLUME: f32 = 1e-30;
 /// See [`LEAST_VOLUME`].
 pub(super) const GREATEST_VOLUME: f32 = 1e30;
 
-/// Four linear functions of a ray's slopes for each of eight triangles: the edge functions opposite to each corner, divided so that their sum
+/// Four linear functions of a ray's slopes for each of sixteen triangles: the edge functions opposite to each corner, divided so that their sum
 /// is one over the depth, and one over the depth.
 #[repr(C, align(64))]
 pub(super) struct Triangles {
     /// For each function its factors for both slopes, and its constant.
-    pub(super) functions: [[[f32; 8]; 3]; 4],
+    pub(super) functions: [[[f32; TRIANGLES]; 3]; 4],
     /// The error of the edge functions.
-    pub(super) errors: [f32; 8],
+    pub(super) errors: [f32; TRIANGLES],
     /// Where all edge functions are larger than this, the ray certainly hits, and its depth is known well; infinite where it never is.
-    pub(super) certain: [f32; 8],
+    pub(super) certain: [f32; TRIANGLES],
     /// The relative error of one over the depth.
-    pub(super) tolerances: [f32; 8],
-    /// For each function and slope the triangles whose factor is negative.
-    negative: [[u32; 2]; 4],
+    pub(super) tolerances: [f32; TRIANGLES],
+    /// The factors without sign.
+    sizes: [[[f32; TRIANGLES]; 2]; 4],
     /// The triangles that some ray may hit.
     pub(super) possible: u32,
     /// Those among them of which not even the orientation is known.
     pub(super) unknown: u32,
 }
 
-/// A vector in space for each of eight triangles.
+/// A vector in space for each of sixteen triangles.
 type Vectors<F> = [F; 3];
 
 #[inline(always)]
@@ -74,21 +77,21 @@ fn largest<F: Float>(a: Vectors<F>) -> F {
 }
 
 impl Triangles {
-    /// Prepares the triangles in the given lanes of a block. If a depth may have a larger relative error than `tolerance`, no hit is
+    /// Prepares the triangles in the given lanes of two blocks. If a depth may have a larger relative error than `tolerance`, no hit is
     /// [certain](Self::certain).
     #[inline(always)]
     pub(super) fn new<S: Simd>(
         simd: S,
-        block: &TriangleBlock,
+        blocks: [&TriangleBlock; 2],
         lanes: u32,
         frame: &Frame,
         groups: &Groups,
         tolerance: f32,
     ) -> Self {
         // The corners in the packet's frame.
-        let a = frame.corners(simd, block, 0);
-        let b = frame.corners(simd, block, 1);
-        let c = frame.corners(simd, block, 2);
+        let a = frame.corners(simd, blocks, 0);
+        let b = frame.corners(simd, blocks, 1);
+        let c = frame.corners(simd, blocks, 2);
 
         // Normals of the planes through the origin and each edge. Sum and difference are the same for the neighbour at the edge, but for
         // the sign, so both find the same number.
@@ -104,41 +107,41 @@ impl Triangles {
         let other = replaced(replaced(bc, first_longest, ca), second_longest, ab);
         let normal = cross(one, other);
         let volume = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
-        let reciprocal = simd.splat8(1.0) / volume;
-        let half = reciprocal * simd.splat8(0.5);
+        let reciprocal = simd.splat16(1.0) / volume;
+        let half = reciprocal * simd.splat16(0.5);
 
         // How inexact that is.
         let reach = largest(a).larger(largest(b)).larger(largest(c));
         let steepest = 1.0 + steepness(&groups.whole[0]) + steepness(&groups.whole[1]);
-        let misses = simd.splat8(2.0 * frame.offset);
-        let edge_roundings = reach * simd.splat8(EDGE_ROUNDINGS * ROUNDING) + misses;
-        let errors = edge_roundings * longest * simd.splat8(steepest) * half.abs();
-        let depth_roundings = reach * simd.splat8(DEPTH_ROUNDINGS * ROUNDING) + misses;
+        let misses = simd.splat16(2.0 * frame.offset);
+        let edge_roundings = reach * simd.splat16(EDGE_ROUNDINGS * ROUNDING) + misses;
+        let errors = edge_roundings * longest * simd.splat16(steepest) * half.abs();
+        let depth_roundings = reach * simd.splat16(DEPTH_ROUNDINGS * ROUNDING) + misses;
         let tolerances = depth_roundings
             * (largest(one) * largest(other))
-            * (simd.splat8(steepest) * reciprocal.abs());
+            * (simd.splat16(steepest) * reciprocal.abs());
         let size = volume.abs();
-        let known = simd.splat8(LEAST_VOLUME).less_or_equal(size)
-            & size.less_or_equal(simd.splat8(GREATEST_VOLUME))
-            & tolerances.less_or_equal(simd.splat8(0.25));
+        let known = simd.splat16(LEAST_VOLUME).less_or_equal(size)
+            & size.less_or_equal(simd.splat16(GREATEST_VOLUME))
+            & tolerances.less_or_equal(simd.splat16(0.25));
         let exact = known
-            & tolerances.less_or_equal(simd.splat8(tolerance))
-            & (errors * reach).less_or_equal(simd.splat8(WEIGHT_TOLERANCE));
-        let never = simd.splat8(f32::INFINITY);
+            & tolerances.less_or_equal(simd.splat16(tolerance))
+            & (errors * reach).less_or_equal(simd.splat16(WEIGHT_TOLERANCE));
+        let never = simd.splat16(f32::INFINITY);
 
         // The functions, and whether any ray of the packet may be inside of all edges and meet the triangle in time.
         let mut triangles = Self {
-            functions: [[[0.0; 8]; 3]; 4],
+            functions: [[[0.0; TRIANGLES]; 3]; 4],
             errors: errors.to_array(),
             certain: never.replaced(exact, errors).to_array(),
             tolerances: tolerances.to_array(),
-            negative: [[0; 2]; 4],
+            sizes: [[[0.0; TRIANGLES]; 2]; 4],
             possible: lanes,
             unknown: lanes & !known,
         };
-        let zero = simd.splat8(0.0);
+        let zero = simd.splat16(0.0);
         let [edge_a, edge_b, edge_c] = edges;
-        let error = zero - errors;
+        let error = errors * simd.splat16(-2.0);
         let functions = [
             (edge_a, half, error),
             (edge_b, half, error),
@@ -150,12 +153,11 @@ impl Triangles {
             triangles.functions[number][2] = greatest.to_array();
             for axis in [1, 0] {
                 let factors = vectors[axis] * factor;
+                let sizes = factors.abs();
                 triangles.functions[number][axis] = factors.to_array();
-                let negative = factors.less(zero);
-                triangles.negative[number][axis] = negative;
-                let [least, most] = groups.whole[axis];
-                let slope = simd.splat8(most).replaced(negative, simd.splat8(least));
-                greatest = factors.mul_add(slope, greatest);
+                triangles.sizes[number][axis] = sizes.to_array();
+                greatest = factors.mul_add(simd.splat16(groups.whole_center[axis]), greatest);
+                greatest = sizes.mul_add(simd.splat16(groups.whole_extent[axis]), greatest);
             }
             triangles.possible &= !greatest.less(least) | triangles.unknown;
         }
@@ -163,14 +165,16 @@ impl Triangles {
     }
 
     /// The groups that may hit a triangle nearer than what they have.
+    ///
+    /// The greatest values are off by less than half the error of an edge function, and by less than the tolerance of a depth.
     #[inline(always)]
     pub(super) fn groups<S: Simd>(&self, simd: S, lane: usize, groups: &Groups) -> u32 {
         let least = self.greatest(simd, 0, lane, groups);
         let least = self.greatest(simd, 1, lane, groups).smaller(least);
         let least = self.greatest(simd, 2, lane, groups).smaller(least);
-        let nearer =
-            self.greatest(simd, 3, lane, groups) * simd.splat16(1.0 + self.tolerances[lane]);
-        let error = simd.splat16(-self.errors[lane]);
+        let nearer = self.greatest(simd, 3, lane, groups)
+            * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0));
+        let error = simd.splat16(-2.0 * self.errors[lane]);
         error.less_or_equal(least) & simd.load16(&groups.least).less(nearer)
     }
 
@@ -189,17 +193,18 @@ impl Triangles {
         simd.splat16(for_x[lane]).mul_add(x, part)
     }
 
-    /// The greatest value that a function of a triangle has in each group.
+    /// The greatest value that a function of a triangle has in each group, up to rounding.
     #[inline(always)]
     fn greatest<S: Simd>(&self, simd: S, number: usize, lane: usize, groups: &Groups) -> S::F16 {
-        let function = &self.functions[number];
-        let mut greatest = simd.splat16(function[2][lane]);
-        for axis in [1, 0] {
-            let side = 1 - (self.negative[number][axis] >> lane & 1) as usize;
-            let slopes = simd.load16(&groups.slopes[axis][side]);
-            greatest = simd.splat16(function[axis][lane]).mul_add(slopes, greatest);
-        }
-        greatest
+        let [for_x, for_y, constant] = &self.functions[number];
+        let [size_x, size_y] = &self.sizes[number];
+        let [x, y] = &groups.centers;
+        let [reach_x, reach_y] = &groups.extents;
+        let greatest = simd.splat16(constant[lane]);
+        let greatest = simd.splat16(for_y[lane]).mul_add(simd.load16(y), greatest);
+        let greatest = simd.splat16(for_x[lane]).mul_add(simd.load16(x), greatest);
+        let greatest = simd.splat16(size_y[lane]).mul_add(simd.load16(reach_y), greatest);
+        simd.splat16(size_x[lane]).mul_add(simd.load16(reach_x), greatest)
     }
 }
 
