@@ -250,6 +250,7 @@ impl Packet {
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
+            simd.prefetch(tree.address(Reference(node.children[lane])));
             let low = [low[0][lane], low[1][lane], low[2][lane]];
             let high = [high[0][lane], high[1][lane], high[2][lane]];
             meeting[lane] = self.groups.meeting(simd, low, high) & groups;
@@ -269,7 +270,6 @@ impl Packet {
                 depth.less(near) | (depth.less_or_equal(near) & !(2u32 << lane).wrapping_sub(1));
             let place = (later & entered).count_ones() as usize;
             let reference = Reference(node.children[lane]);
-            simd.prefetch(tree.address(reference));
             stack[place] = Item { reference, groups: meeting[lane], near: depths[lane] };
         }
         count
