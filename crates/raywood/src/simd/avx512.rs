@@ -168,6 +168,41 @@ float!(
     greatest_of_eight
 );
 
+/// Folds each of sixteen rows to one number, by an operation on pairs. Each of four steps folds two registers to one, in which their numbers alternate.
+macro_rules! of_rows {
+    ($rows:expr, $fold:ident) => {{
+        let row = |number: usize| _mm512_loadu_ps($rows[number].as_ptr());
+        // Numbers next to each other of rows 0 and 1, then pairs of them, then quarters of the registers.
+        macro_rules! rows {
+            ($a:expr, $b:expr) => {{
+                let (a, b) = (row($a), row($b));
+                $fold(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b))
+            }};
+        }
+        macro_rules! pairs {
+            ($a:expr, $b:expr) => {{
+                let (a, b) = (_mm512_castps_pd($a), _mm512_castps_pd($b));
+                let (low, high) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+                $fold(_mm512_castpd_ps(low), _mm512_castpd_ps(high))
+            }};
+        }
+        macro_rules! quarters {
+            ($a:expr, $b:expr) => {{
+                let (a, b) = ($a, $b);
+                $fold(
+                    _mm512_shuffle_f32x4::<0b10_00_10_00>(a, b),
+                    _mm512_shuffle_f32x4::<0b11_01_11_01>(a, b),
+                )
+            }};
+        }
+        let first = pairs!(rows!(0, 1), rows!(2, 3));
+        let second = pairs!(rows!(4, 5), rows!(6, 7));
+        let third = pairs!(rows!(8, 9), rows!(10, 11));
+        let fourth = pairs!(rows!(12, 13), rows!(14, 15));
+        quarters!(quarters!(first, second), quarters!(third, fourth))
+    }};
+}
+
 impl Simd for Avx512 {
     type F16 = F16;
     type F8 = F8;
@@ -241,6 +276,18 @@ impl Simd for Avx512 {
             }
             [coordinate!(0), coordinate!(1), coordinate!(2)]
         }
+    }
+
+    #[inline(always)]
+    fn least_of_rows(self, rows: &[[f32; 16]; 16]) -> F16 {
+        // SAFETY: the token.
+        F16(unsafe { of_rows!(rows, _mm512_min_ps) })
+    }
+
+    #[inline(always)]
+    fn greatest_of_rows(self, rows: &[[f32; 16]; 16]) -> F16 {
+        // SAFETY: the token.
+        F16(unsafe { of_rows!(rows, _mm512_max_ps) })
     }
 
     #[inline(always)]

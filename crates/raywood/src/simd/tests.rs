@@ -347,3 +347,31 @@ fn columns_are_rows_turned() {
         }
     }
 }
+
+/// The least and the greatest number of each of sixteen rows.
+struct OfRows([[f32; 16]; 16]);
+
+impl Kernel for OfRows {
+    type Output = [[f32; 16]; 2];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        [simd.least_of_rows(&self.0).to_array(), simd.greatest_of_rows(&self.0).to_array()]
+    }
+}
+
+#[test]
+fn rows_are_folded_each_to_its_own_lane() {
+    // Every place of a row once holds its least number, and once its greatest.
+    for shift in 0..16 {
+        let rows: [[f32; 16]; 16] = std::array::from_fn(|row| {
+            std::array::from_fn(|place| (100 * row + (place + shift + row) % 16) as f32)
+        });
+        for level in levels() {
+            let [least, greatest] = dispatch_on(level, OfRows(rows));
+            let expected = std::array::from_fn(|row| (100 * row) as f32);
+            assert_eq!(least, expected, "{}", level.name());
+            assert_eq!(greatest, expected.map(|least| least + 15.0), "{}", level.name());
+        }
+    }
+}

@@ -120,6 +120,26 @@ pub(crate) trait Simd: Copy {
         [self.load16(&columns[0]), self.load16(&columns[1]), self.load16(&columns[2])]
     }
 
+    /// The least number of each row, none of which is NaN.
+    #[inline(always)]
+    fn least_of_rows(self, rows: &[[f32; 16]; 16]) -> Self::F16 {
+        let mut least = [0.0; 16];
+        for (least, row) in least.iter_mut().zip(rows) {
+            *least = self.load16(row).least();
+        }
+        self.load16(&least)
+    }
+
+    /// The greatest number of each row, none of which is NaN.
+    #[inline(always)]
+    fn greatest_of_rows(self, rows: &[[f32; 16]; 16]) -> Self::F16 {
+        let mut greatest = [0.0; 16];
+        for (greatest, row) in greatest.iter_mut().zip(rows) {
+            *greatest = self.load16(row).greatest();
+        }
+        self.load16(&greatest)
+    }
+
     /// Asks for seven cache lines from an address on to be fetched soon. Nothing is read, so any address will do.
     #[inline(always)]
     fn prefetch(self, start: *const u8) {

@@ -162,7 +162,13 @@ impl Packet {
             self.slopes[0][group] = zero.replaced(members, x).to_array();
             self.slopes[1][group] = zero.replaced(members, y).to_array();
             self.scales[group] = scale.to_array();
-            let limit = scale / length * simd.splat16(1.0 - 1.0 / (1 << 20) as f32);
+            // Divisions are slow, and here the length is known.
+            let limit = match R::COMMON {
+                Some(source::Common::Origin) => zero,
+                Some(source::Common::Target) => scale,
+                None => scale / length,
+            };
+            let limit = limit * simd.splat16(1.0 - 1.0 / (1 << 20) as f32);
             let limit = never.replaced(members, limit);
             self.nearest[group] = limit.to_array();
             self.primitives[group] = [f32::from_bits(NONE); GROUP];
@@ -188,19 +194,22 @@ impl Packet {
         self.groups = Groups::NONE;
         let above = simd.splat16(f32::INFINITY);
         let below = simd.splat16(f32::NEG_INFINITY);
-        for group in 0..GROUP {
-            let members = self.members[group];
-            if members == 0 {
-                continue;
+        let groups = &mut self.groups;
+        groups.least = simd.least_of_rows(&self.nearest).to_array();
+        for axis in 0..2 {
+            groups.slopes[axis][0] = simd.least_of_rows(&self.slopes[axis]).to_array();
+            groups.slopes[axis][1] = simd.greatest_of_rows(&self.slopes[axis]).to_array();
+        }
+        for (group, &members) in self.members.iter().enumerate() {
+            groups.live |= u32::from(members != 0) << group;
+            if members != 0xffff {
+                // Lanes without a ray do not count.
+                for axis in 0..2 {
+                    let slopes = simd.load16(&self.slopes[axis][group]);
+                    groups.slopes[axis][0][group] = above.replaced(members, slopes).least();
+                    groups.slopes[axis][1][group] = below.replaced(members, slopes).greatest();
+                }
             }
-            let groups = &mut self.groups;
-            groups.live |= 1 << group;
-            groups.least[group] = simd.load16(&self.nearest[group]).least();
-            let (x, y) = (simd.load16(&self.slopes[0][group]), simd.load16(&self.slopes[1][group]));
-            groups.slopes[0][0][group] = above.replaced(members, x).least();
-            groups.slopes[0][1][group] = below.replaced(members, x).greatest();
-            groups.slopes[1][0][group] = above.replaced(members, y).least();
-            groups.slopes[1][1][group] = below.replaced(members, y).greatest();
         }
         self.groups.prepare(simd);
         self.groups.look_again(simd);

@@ -96,8 +96,8 @@ impl Packet {
                 let from = usize::from(group) % GROUP;
                 let (to, place) = (usize::from(sorted[place / GROUP]) % GROUP, place % GROUP);
                 self.numbers[to][place] = (from * GROUP + lane) as u8;
-                for axis in 0..2 {
-                    self.slopes[axis][to][place] = slopes[axis][from][lane];
+                for (new, old) in self.slopes.iter_mut().zip(&slopes) {
+                    new[to][place] = old[from][lane];
                 }
                 self.nearest[to][place] = nearest[from][lane];
                 self.scales[to][place] = scales[from][lane];
