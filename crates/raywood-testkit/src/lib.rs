@@ -1,10 +1,12 @@
-//! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays that look for trouble,
+//! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays and points that look for trouble,
 //! pseudo-random numbers, image comparison, well-formed pages. Not published.
 
+pub mod distance;
 pub mod html;
 pub mod image;
 pub mod nasty;
 pub mod oracle;
+pub mod points;
 pub mod rays;
 mod rng;
 pub mod shapes;

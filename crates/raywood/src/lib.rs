@@ -38,12 +38,14 @@
 mod aabb;
 mod build;
 mod bvh;
+mod double;
 mod error;
 mod geometry;
 mod hit;
 mod hit_columns;
 mod minmax;
 mod parallel;
+mod query;
 mod ray;
 mod simd;
 mod stats;
@@ -57,11 +59,12 @@ pub use build::{BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use error::BuildError;
 pub use geometry::{
-    Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, Spheres, SpheresError, SurfacePoint,
-    TriangleMesh,
+    Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres, SpheresError,
+    SurfacePoint, TriangleMesh,
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
+pub use query::ClosestPoint;
 pub use ray::Ray;
 pub use simd::{SimdLevel, SimdLevelError, Vectorized};
 pub use stats::{Level, NodeView, StructureStats};

@@ -1,6 +1,6 @@
 //! Two kinds of geometry as one.
 
-use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use super::{Geometry, PreparedRay, PrimitiveHit, PrimitivePoint, SurfacePoint};
 use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Two geometries under one numbering: first all primitives of `first`, then all of `second`.
@@ -62,6 +62,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         match self.in_second(primitive) {
             None => self.first.intersect(primitive, ray),
             Some(primitive) => self.second.intersect(primitive, ray),
+        }
+    }
+
+    fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
+        match self.in_second(primitive) {
+            None => self.first.closest_point(primitive, point),
+            Some(primitive) => self.second.closest_point(primitive, point),
         }
     }
 

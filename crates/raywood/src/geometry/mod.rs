@@ -1,6 +1,8 @@
 //! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
 
+mod block_distances;
 mod clip;
+mod closest_point;
 mod joined;
 mod prepared_ray;
 mod separation;
@@ -10,6 +12,9 @@ mod triangle_block;
 mod triangle_mesh;
 mod watertight;
 
+pub(crate) use block_distances::Frame;
+pub use closest_point::PrimitivePoint;
+pub(crate) use closest_point::closest_on_triangle;
 pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
 pub use spheres::{Spheres, SpheresError};
@@ -75,6 +80,15 @@ pub trait Geometry: Sync {
     /// `t` must be a number and inside the interval; a caller may rely on it.
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit>;
 
+    /// The point of the primitive that is closest to `point`, which is finite; `None` if that cannot be told.
+    ///
+    /// Queries about what is near, such as [`Bvh::closest_point`](crate::Bvh::closest_point), see no primitive of which it cannot be told. The point must lie in
+    /// the primitive's bounds. Where [`triangle`](Self::triangle) tells of corners, these count and this is not asked. The default knows triangles and nothing
+    /// else.
+    fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
+        Some(closest_on_triangle(point, self.triangle(primitive)?))
+    }
+
     /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
     ///
     /// `hit` must be an answer that this geometry gave for `ray`; it may panic on a primitive that does not exist.
@@ -105,6 +119,11 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline(always)]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         (**self).intersect(primitive, ray)
+    }
+
+    #[inline]
+    fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
+        (**self).closest_point(primitive, point)
     }
 
     #[inline(always)]

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use super::{Geometry, PreparedRay, PrimitiveHit, PrimitivePoint, SurfacePoint};
+use crate::double::{add, dot, double, scale, single, sub};
 use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Spheres given by centre and radius, hit from outside and from inside. Checked once, when made.
@@ -116,6 +117,18 @@ impl Geometry for Spheres {
             .into_iter()
             .find(|&t| ray.accepts(t))?;
         Some(PrimitiveHit { t, u: 0.0, v: 0.0 })
+    }
+
+    /// The closest point of the surface, from inside too. Of points equally close, as seen from the centre, one along x.
+    fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
+        let (center, radius) = self.spheres[primitive as usize];
+        let (center, radius) = (double(center), f64::from(radius));
+        let outwards = sub(double(point), center);
+        let distance = dot(outwards, outwards).sqrt();
+        let offset =
+            if distance > 0.0 { scale(radius / distance, outwards) } else { [radius, 0.0, 0.0] };
+        let distance = (distance - radius).abs() as f32;
+        Some(PrimitivePoint { point: single(add(center, offset)), distance, u: 0.0, v: 0.0 })
     }
 
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {

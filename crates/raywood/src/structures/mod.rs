@@ -7,7 +7,7 @@ mod kd_tree;
 pub(crate) mod octree;
 mod registry;
 mod structure;
-mod wide;
+pub(crate) mod wide;
 
 pub use brute_force::BruteForce;
 pub use bvh2::{Bvh2, Node};

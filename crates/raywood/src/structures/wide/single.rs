@@ -111,7 +111,7 @@ impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
 const SMALL: usize = 160;
 
 /// The stack of one ray: on the program's own stack unless the tree is unusually deep.
-struct SmallStack {
+pub(super) struct SmallStack {
     keys: [f32; SMALL],
     items: [u32; SMALL],
     large: (Vec<f32>, Vec<u32>),
@@ -119,7 +119,7 @@ struct SmallStack {
 
 impl SmallStack {
     #[inline(always)]
-    fn new(tree: &WideBvh) -> Self {
+    pub(super) fn new(tree: &WideBvh) -> Self {
         let size = tree.stack_size();
         let large = if size > SMALL { (vec![0.0; size], vec![0; size]) } else { (vec![], vec![]) };
         Self { keys: [0.0; SMALL], items: [0; SMALL], large }
@@ -127,7 +127,7 @@ impl SmallStack {
 
     /// The keys and the items.
     #[inline(always)]
-    fn parts(&mut self) -> (&mut [f32], &mut [u32]) {
+    pub(super) fn parts(&mut self) -> (&mut [f32], &mut [u32]) {
         let (keys, items) = if self.large.0.is_empty() {
             (&mut self.keys[..], &mut self.items[..])
         } else {
