@@ -43,3 +43,21 @@ pub fn tolerance(point: Vec3, mesh: &TriangleMesh, distance: f64) -> f64 {
     let largest = point.abs().max(bounds.min.abs()).max(bounds.max.abs()).max_element();
     distance * f64::from(f32::EPSILON) + f64::from(largest) * 2f64.powi(-40) + 2f64.powi(-149)
 }
+
+/// How often a mesh goes around a point: the sum of the solid angles of all triangles, each by the excess of its spherical angles' tangent formula.
+pub fn winding_number(point: Vec3, mesh: &TriangleMesh) -> f64 {
+    let p = double(point);
+    let angle = |triangle: u32| {
+        let unit = |corner: Vec3| {
+            let v = sub(double(corner), p);
+            let length = length(v);
+            [v[0] / length, v[1] / length, v[2] / length]
+        };
+        let [a, b, c] = mesh.corners(triangle).map(unit);
+        let angle = 2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+        // At a corner there is no angle.
+        if angle.is_nan() { 0.0 } else { angle }
+    };
+    let sum: f64 = (0..mesh.triangles().len() as u32).map(angle).sum();
+    sum / (4.0 * std::f64::consts::PI)
+}

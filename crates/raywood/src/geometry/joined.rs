@@ -72,6 +72,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
+        match self.in_second(primitive) {
+            None => self.first.winding_number(primitive, point),
+            Some(primitive) => self.second.winding_number(primitive, point),
+        }
+    }
+
     #[inline(always)]
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         match self.in_second(hit.primitive) {

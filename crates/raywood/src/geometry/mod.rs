@@ -89,6 +89,13 @@ pub trait Geometry: Sync {
         Some(closest_on_triangle(point, self.triangle(primitive)?))
     }
 
+    /// How often the primitive's surface goes around a finite point, counted with sign, parts of a whole for an open one: for [`Bvh::solid`](crate::Bvh::solid). Of one that is no
+    /// [`triangle`](Self::triangle) it must be 0 at all points outside of its bounds, as it is for closed surfaces. It is not asked of triangles. The default is 0.
+    fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
+        let _ = (primitive, point);
+        0.0
+    }
+
     /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
     ///
     /// `hit` must be an answer that this geometry gave for `ray`; it may panic on a primitive that does not exist.
@@ -124,6 +131,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline]
     fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
         (**self).closest_point(primitive, point)
+    }
+
+    fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
+        (**self).winding_number(primitive, point)
     }
 
     #[inline(always)]

@@ -131,6 +131,14 @@ impl Geometry for Spheres {
         Some(PrimitivePoint { point: single(add(center, offset)), distance, u: 0.0, v: 0.0 })
     }
 
+    /// One inside, nothing outside.
+    fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
+        let (center, radius) = self.spheres[primitive as usize];
+        let outwards = sub(double(point), double(center));
+        let is_inside = dot(outwards, outwards) < f64::from(radius) * f64::from(radius);
+        f64::from(u8::from(is_inside))
+    }
+
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let (center, radius) = self.spheres[hit.primitive as usize];
 

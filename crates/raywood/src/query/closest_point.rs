@@ -71,7 +71,7 @@ impl<G: Geometry> Bvh<G> {
     }
 
     /// The same on the calling thread.
-    fn closest_points(
+    pub(super) fn closest_points(
         &self,
         points: &[Vec3],
         max_distance: f32,

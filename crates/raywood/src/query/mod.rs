@@ -2,6 +2,8 @@
 //! [`Bvh`](crate::Bvh).
 
 mod closest_point;
+mod solid;
 mod visit;
 
 pub use closest_point::ClosestPoint;
+pub use solid::Solid;

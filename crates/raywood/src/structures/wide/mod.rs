@@ -15,6 +15,7 @@ mod source;
 mod step;
 #[cfg(test)]
 mod tests;
+pub(crate) mod winding;
 
 use super::AccelerationStructure;
 use crate::geometry::TriangleBlock;
