@@ -6,6 +6,7 @@ pub mod html;
 pub mod image;
 pub mod nasty;
 pub mod oracle;
+pub mod overlap;
 pub mod points;
 pub mod rays;
 mod rng;

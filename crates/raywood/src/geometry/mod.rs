@@ -17,6 +17,7 @@ pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::closest_on_triangle;
 pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
+pub(crate) use separation::triangle_overlaps;
 pub use spheres::{Spheres, SpheresError};
 pub use surface::SurfacePoint;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};

@@ -15,7 +15,7 @@ const PLANE_ROUNDING: f64 = 32.0 * f64::EPSILON;
 ///
 /// Conservative: in double precision, against a cell larger by the rounding errors. Most answers come after a few comparisons; the longest way
 /// takes some hundred operations and no memory, a small part of what clipping takes.
-pub(super) fn triangle_overlaps(corners: [Vec3; 3], cell: &Aabb) -> bool {
+pub(crate) fn triangle_overlaps(corners: [Vec3; 3], cell: &Aabb) -> bool {
     let bounds = Aabb::of_points(corners);
     if bounds.intersection(cell).is_empty() {
         return false;

@@ -70,6 +70,9 @@ impl Spheres {
     }
 }
 
+/// How thick a sphere's surface is where it is asked for cells that it passes through, per unit of its coordinates: some roundings of points on it.
+const OVERLAP_SLACK: f64 = 8.0 * f32::EPSILON as f64;
+
 /// The box around a sphere, rounded outwards.
 fn sphere_bounds(center: Vec3, radius: f32) -> Aabb {
     let down = |x: f32| (x - radius).next_down();
@@ -89,6 +92,22 @@ impl Geometry for Spheres {
     fn bounds(&self, primitive: u32) -> Aabb {
         let (center, radius) = self.spheres[primitive as usize];
         sphere_bounds(center, radius)
+    }
+
+    /// Whether the surface passes through the cell: it does not where the cell lies inside, or beside the sphere in a corner of its box.
+    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+        let (center, radius) = self.spheres[primitive as usize];
+        if sphere_bounds(center, radius).intersection(cell).is_empty() {
+            return false;
+        }
+        // The nearest and the farthest point of the cell.
+        let (min, max) =
+            (sub(double(cell.min), double(center)), sub(double(cell.max), double(center)));
+        let near = [0, 1, 2].map(|i| min[i].max(-max[i]).max(0.0));
+        let far = [0, 1, 2].map(|i| max[i].max(-min[i]));
+        let slack = OVERLAP_SLACK * (f64::from(center.abs().max_element()) + f64::from(radius));
+        dot(near, near).sqrt() <= f64::from(radius) + slack
+            && f64::from(radius) - slack <= dot(far, far).sqrt()
     }
 
     #[inline]

@@ -2,8 +2,10 @@
 //! [`Bvh`](crate::Bvh).
 
 mod closest_point;
+mod overlap;
 mod solid;
 mod visit;
 
 pub use closest_point::ClosestPoint;
+pub use overlap::{Ball, Region};
 pub use solid::Solid;

@@ -1,0 +1,36 @@
+//! Whether triangles reach into convex regions, by clipping in double precision: Sutherland and Hodgman 1974.
+
+use raywood::{Aabb, Vec3};
+
+use crate::oracle::{Point, dot, double};
+
+/// Whether a part of the triangle lies where `normal . p + offset >= 0` for all planes. Touching counts as far as rounding lets it.
+pub fn triangle_in_planes(corners: [Vec3; 3], planes: &[(Point, f64)]) -> bool {
+    let mut polygon = corners.map(double).to_vec();
+    for &(normal, offset) in planes {
+        let height = |p: Point| dot(normal, p) + offset;
+        let mut clipped = Vec::new();
+        for (number, &p) in polygon.iter().enumerate() {
+            let q = polygon[(number + 1) % polygon.len()];
+            let (h, k) = (height(p), height(q));
+            if h >= 0.0 {
+                clipped.push(p);
+            }
+            if (h < 0.0) != (k < 0.0) {
+                let s = h / (h - k);
+                clipped.push([0, 1, 2].map(|i| p[i] + s * (q[i] - p[i])));
+            }
+        }
+        polygon = clipped;
+    }
+    !polygon.is_empty()
+}
+
+/// The planes of a box, that is larger by `margin` on all sides.
+pub fn planes_of(region: &Aabb, margin: f64) -> Vec<(Point, f64)> {
+    let axis = |axis: usize, sign: f64| [0, 1, 2].map(|i| if i == axis { sign } else { 0.0 });
+    let (min, max) = (double(region.min), double(region.max));
+    (0..3)
+        .flat_map(|i| [(axis(i, 1.0), margin - min[i]), (axis(i, -1.0), margin + max[i])])
+        .collect()
+}

@@ -1,0 +1,45 @@
+//! The axis-aligned box as a region.
+
+use super::{Region, Touch, private::Prepare};
+use crate::geometry::{TriangleBlock, triangle_overlaps};
+use crate::simd::{Float, Simd};
+use crate::structures::wide::search::{Planes, lanes};
+use crate::{Aabb, Geometry, Vec3};
+
+/// What touches a box are the triangles with a point in it, within `2^-48` of the largest coordinate, and of other primitives those that [say so](Geometry::overlaps).
+/// The box may reach to infinity; if it is empty or has NaN nothing touches it.
+impl Region for Aabb {}
+
+impl Prepare for Aabb {
+    fn prepare(&self, _: f32) -> Option<impl Touch> {
+        // Finite, so that no child that is not there touches it.
+        let finite = |v: Vec3| v.max(Vec3::splat(f32::MIN)).min(Vec3::splat(f32::MAX));
+        (!self.is_empty()).then(|| Aabb { min: finite(self.min), max: finite(self.max) })
+    }
+}
+
+impl Touch for Aabb {
+    #[inline(always)]
+    fn boxes<S: Simd>(&self, simd: S, planes: &Planes) -> u32 {
+        let mut touching = u32::MAX;
+        for axis in 0..3 {
+            let (min, max) = (simd.splat16(self.min[axis]), simd.splat16(self.max[axis]));
+            touching &= simd.load16(&planes[axis][0]).less_or_equal(max)
+                & min.less_or_equal(simd.load16(&planes[axis][1]));
+        }
+        touching
+    }
+
+    #[inline(always)]
+    fn triangles<S: Simd>(&self, _: S, block: &TriangleBlock, chosen: u32) -> u32 {
+        let mut touching = 0;
+        for lane in lanes(chosen) {
+            touching |= u32::from(triangle_overlaps(block.corners(lane), self)) << lane;
+        }
+        touching
+    }
+
+    fn primitive<G: Geometry>(&self, geometry: &G, primitive: u32) -> bool {
+        geometry.overlaps(primitive, self)
+    }
+}
