@@ -64,7 +64,7 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
-pub use query::{Ball, ClosestPoint, Region, Solid};
+pub use query::{Ball, ClosestPoint, Region, Solid, SphereHit};
 pub use ray::Ray;
 pub use simd::{SimdLevel, SimdLevelError, Vectorized};
 pub use stats::{Level, NodeView, StructureStats};

@@ -29,13 +29,18 @@ pub(crate) fn closest_on_triangle(point: Vec3, corners: [Vec3; 3]) -> PrimitiveP
     // Everything relative to the point.
     let [a, b, c] =
         [sub(double(corners[0]), p), sub(double(corners[1]), p), sub(double(corners[2]), p)];
-    let told = |offset: Double3, u: f64, v: f64| PrimitivePoint {
+    let (offset, u, v) = closest_to_zero([a, b, c]);
+    PrimitivePoint {
         point: single(add(p, offset)),
         distance: dot(offset, offset).sqrt() as f32,
         u: u as f32,
         v: v as f32,
-    };
+    }
+}
 
+/// The point of a triangle that is closest to zero, and its surface coordinates.
+#[inline]
+pub(crate) fn closest_to_zero([a, b, c]: [Double3; 3]) -> (Double3, f64, f64) {
     // The plane: the weight of a corner is the area across from it, seen along the normal.
     let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
     let normal = cross(ab, sub(c, a));
@@ -45,18 +50,18 @@ pub(crate) fn closest_on_triangle(point: Vec3, corners: [Vec3; 3]) -> PrimitiveP
     let sum = weights[0] + weights[1] + weights[2];
     if inside && squared > 0.0 && sum > 0.0 {
         let offset = scale(dot(normal, a) / squared, normal);
-        return told(offset, weights[1] / sum, weights[2] / sum);
+        return (offset, weights[1] / sum, weights[2] / sum);
     }
 
     // The edges.
     let edges = [closest_on_segment(a, b), closest_on_segment(b, c), closest_on_segment(c, a)];
     let squares = [0, 1, 2].map(|i| dot(edges[i].0, edges[i].0));
     let (offset, s) = match squares {
-        [x, y, z] if x <= y && x <= z => return told(edges[0].0, edges[0].1, 0.0),
+        [x, y, z] if x <= y && x <= z => return (edges[0].0, edges[0].1, 0.0),
         [_, y, z] if y <= z => edges[1],
-        _ => return told(edges[2].0, 0.0, 1.0 - edges[2].1),
+        _ => return (edges[2].0, 0.0, 1.0 - edges[2].1),
     };
-    told(offset, 1.0 - s, s)
+    (offset, 1.0 - s, s)
 }
 
 /// The point of the segment from `a` to `b` that is closest to zero, and what share of the way it lies. The same point for the segment from `b` to `a`, to the

@@ -8,18 +8,20 @@ mod prepared_ray;
 mod separation;
 mod spheres;
 mod surface;
+mod swept_sphere;
 mod triangle_block;
 mod triangle_mesh;
 mod watertight;
 
 pub(crate) use block_distances::Frame;
 pub use closest_point::PrimitivePoint;
-pub(crate) use closest_point::closest_on_triangle;
+pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
 pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
 pub(crate) use separation::triangle_overlaps;
 pub use spheres::{Spheres, SpheresError};
 pub use surface::SurfacePoint;
+pub(crate) use swept_sphere::swept_sphere;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
 

@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Frame, TriangleBlock, closest_on_triangle};
 use crate::simd::{Float, Kernel, Simd, dispatch_on};
-use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes};
+use crate::structures::WideNode;
+use crate::structures::wide::search::{Leaf, Query, SearchStack, lanes, planes};
 use crate::{Bvh, Geometry, PrimitivePoint, Vec3, WideBvh, parallel};
 
 /// The point of a geometry that is closest to a given one.
@@ -197,8 +198,8 @@ impl<'t, G: Geometry> Nearest<'_, 't, G> {
 
 impl<'t, G: Geometry> Query<'t> for Nearest<'_, 't, G> {
     #[inline(always)]
-    fn children<S: Simd>(&mut self, simd: S, planes: &Planes) -> (u32, S::F16) {
-        let keys = self.frame.boxes(simd, planes);
+    fn children<S: Simd>(&mut self, simd: S, node: &WideNode) -> (u32, S::F16) {
+        let keys = self.frame.boxes(simd, planes(node));
         let end = self.limit + self.limit * (8.0 * f32::EPSILON);
         (keys.less_or_equal(simd.splat16(end.min(f32::MAX))), keys)
     }

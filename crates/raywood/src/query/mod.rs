@@ -4,8 +4,10 @@
 mod closest_point;
 mod overlap;
 mod solid;
+mod sphere_cast;
 mod visit;
 
 pub use closest_point::ClosestPoint;
 pub use overlap::{Ball, Region};
 pub use solid::Solid;
+pub use sphere_cast::SphereHit;

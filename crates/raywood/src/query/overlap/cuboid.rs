@@ -22,10 +22,10 @@ impl Touch for Aabb {
     #[inline(always)]
     fn boxes<S: Simd>(&self, simd: S, planes: &Planes) -> u32 {
         let mut touching = u32::MAX;
-        for axis in 0..3 {
+        for (axis, [least, greatest]) in planes.iter().enumerate() {
             let (min, max) = (simd.splat16(self.min[axis]), simd.splat16(self.max[axis]));
-            touching &= simd.load16(&planes[axis][0]).less_or_equal(max)
-                & min.less_or_equal(simd.load16(&planes[axis][1]));
+            touching &=
+                simd.load16(least).less_or_equal(max) & min.less_or_equal(simd.load16(greatest));
         }
         touching
     }

@@ -12,7 +12,8 @@ pub use ball::Ball;
 
 use crate::geometry::TriangleBlock;
 use crate::simd::{Kernel, Simd, dispatch_on};
-use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes};
+use crate::structures::WideNode;
+use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes, planes};
 use crate::{Bvh, Geometry, WideBvh, parallel};
 
 /// A region of space that primitives can touch: an [`Aabb`](crate::Aabb) or a [`Ball`]. What each counts as touching is said with it.
@@ -130,8 +131,8 @@ where
     F: FnMut(u32) -> ControlFlow<()>,
 {
     #[inline(always)]
-    fn children<S: Simd>(&mut self, simd: S, planes: &Planes) -> (u32, S::F16) {
-        (self.touch.boxes(simd, planes), simd.splat16(0.0))
+    fn children<S: Simd>(&mut self, simd: S, node: &WideNode) -> (u32, S::F16) {
+        (self.touch.boxes(simd, planes(node)), simd.splat16(0.0))
     }
 
     fn limit(&self) -> f32 {

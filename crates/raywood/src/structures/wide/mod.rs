@@ -13,6 +13,7 @@ mod sink;
 mod slabs;
 mod source;
 mod step;
+pub(crate) mod sweep;
 #[cfg(test)]
 mod tests;
 pub(crate) mod winding;

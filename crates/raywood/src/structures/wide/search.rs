@@ -6,15 +6,21 @@
 use std::ops::ControlFlow;
 
 use super::WideBvh;
-use super::node::Reference;
+use super::node::{Reference, WideNode};
 use super::single::SmallStack;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Simd};
 use crate::{Aabb, Geometry};
 
-/// The boxes of sixteen children, by axis and side: first the smallest, then the largest coordinates. A child that is not there has an inverted infinite
+/// The boxes of sixteen [children](planes), by axis and side: first the smallest, then the largest coordinates. A child that is not there has an inverted infinite
 /// box.
 pub(crate) type Planes = [[[f32; 16]; 2]; 3];
+
+/// The boxes of a node's children.
+#[inline(always)]
+pub(crate) fn planes(node: &WideNode) -> &Planes {
+    &node.planes
+}
 
 /// The primitives of a leaf.
 #[derive(Clone, Copy)]
@@ -38,9 +44,9 @@ impl Leaf<'_> {
 /// What a walk through the tree looks for.
 pub(crate) trait Query<'t> {
     /// The children to look into, as a set of lanes, and the key of each: those with small keys come first. Must be `#[inline(always)]`.
-    fn children<S: Simd>(&mut self, simd: S, planes: &Planes) -> (u32, S::F16);
+    fn children<S: Simd>(&mut self, simd: S, node: &WideNode) -> (u32, S::F16);
 
-    /// What was put aside with a larger key need no longer be looked into. Finite, never less than zero.
+    /// What was put aside with a larger key need no longer be looked into. Not NaN.
     fn limit(&self) -> f32;
 
     /// Looks at the primitives of a leaf, and ends the walk with a break. Must be `#[inline(always)]`.
@@ -48,7 +54,7 @@ pub(crate) trait Query<'t> {
 }
 
 impl WideBvh {
-    /// Walks through the tree for a query. Keys are finite and not negative.
+    /// Walks through the tree for a query. Keys are finite.
     #[inline(always)]
     pub(crate) fn search<'t, S: Simd, G: Geometry, Q: Query<'t>>(
         &'t self,
@@ -70,7 +76,7 @@ impl WideBvh {
                 query.leaf(simd, leaf)?;
             } else {
                 let node = self.node(current);
-                let (chosen, near) = query.children(simd, &node.planes);
+                let (chosen, near) = query.children(simd, node);
                 top += push_in_order(simd, chosen, near, &node.children, (keys, items), top);
             }
 
@@ -134,7 +140,7 @@ impl SearchStack {
 /// roundings of their own.
 #[inline(always)]
 fn end_of_keys(limit: f32) -> f32 {
-    limit + limit * (32.0 * f32::EPSILON) + f32::MIN_POSITIVE
+    limit + limit.abs() * (32.0 * f32::EPSILON) + f32::MIN_POSITIVE
 }
 
 /// The lanes of a set.

@@ -6,6 +6,7 @@
 //! skipped. Which hit wins is decided by the canonical test of the primitive's own box alone.
 
 use super::node::WideNode;
+use crate::geometry::TriangleBlock;
 use crate::minmax::larger;
 use crate::simd::{Float, Simd};
 use crate::{PreparedRay, Vec3};
@@ -102,6 +103,37 @@ impl Slabs {
                 (self.entry[axis], self.exit[axis]) = (f32::MIN, f32::MAX);
             }
         }
+    }
+
+    /// Those of the same ray among boxes that are larger by `margin` on all sides.
+    pub(super) fn around(mut self, margin: f32) -> Self {
+        let margin = margin + margin * PRODUCT_ERROR * 8.0;
+        for axis in 0..3 {
+            let wider = margin * self.reciprocal[axis].abs();
+            // Finite, so that no child that is not there is met.
+            self.entry[axis] = (self.entry[axis] - wider).max(f32::MIN);
+            self.exit[axis] = (self.exit[axis] + wider).min(f32::MAX);
+        }
+        self
+    }
+
+    /// The triangles of a block whose boxes the ray may meet up to `limit`, as a set of lanes.
+    #[inline(always)]
+    pub(super) fn triangles_met<S: Simd>(&self, simd: S, block: &TriangleBlock, limit: f32) -> u32 {
+        let (mut near, mut far) = (simd.splat8(self.t_min), simd.splat8(limit));
+        for axis in 0..3 {
+            let reciprocal = simd.splat8(self.reciprocal[axis]);
+            let a = simd.load8(block.coordinates(0, axis));
+            let b = simd.load8(block.coordinates(1, axis));
+            let c = simd.load8(block.coordinates(2, axis));
+            let (least, greatest) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
+            let backwards = matches!(self.sides[axis], Side::Largest);
+            let entry = greatest.where_else(backwards, least);
+            let exit = least.where_else(backwards, greatest);
+            near = entry.mul_add(reciprocal, simd.splat8(self.entry[axis])).larger(near);
+            far = exit.mul_add(reciprocal, simd.splat8(self.exit[axis])).smaller(far);
+        }
+        near.less_or_equal(far.abs().mul_add(simd.splat8(SLACK), far))
     }
 
     /// The children that the ray may meet up to `limit`, as a set of lanes, and where it enters the box of each, at the earliest.
