@@ -2,7 +2,7 @@
 
 use raywood::{Aabb, Vec3};
 
-use crate::oracle::{Point, dot, double};
+use crate::oracle::{Point, cross, dot, double, length, sub};
 
 /// Whether a part of the triangle lies where `normal . p + offset >= 0` for all planes. Touching counts as far as rounding lets it.
 pub fn triangle_in_planes(corners: [Vec3; 3], planes: &[(Point, f64)]) -> bool {
@@ -33,4 +33,18 @@ pub fn planes_of(region: &Aabb, margin: f64) -> Vec<(Point, f64)> {
     (0..3)
         .flat_map(|i| [(axis(i, 1.0), margin - min[i]), (axis(i, -1.0), margin + max[i])])
         .collect()
+}
+
+/// The planes around a triangle of sound shape, `across` away from its own plane on both sides and `beside` outside of its edges.
+pub fn planes_around(corners: [Vec3; 3], across: f64, beside: f64) -> Vec<(Point, f64)> {
+    let [a, b, c] = corners.map(double);
+    let unit = |v: Point| v.map(|x| x / length(v));
+    let normal = unit(cross(sub(b, a), sub(c, a)));
+    let back = normal.map(|x| -x);
+    let mut planes = vec![(normal, across - dot(normal, a)), (back, across - dot(back, a))];
+    for (from, to) in [(a, b), (b, c), (c, a)] {
+        let inwards = unit(cross(normal, sub(to, from)));
+        planes.push((inwards, beside - dot(inwards, from)));
+    }
+    planes
 }

@@ -21,6 +21,8 @@
 //!   into one tree.
 //! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores. Its tree, the [`WideBvh`], is traced by vector instructions
 //!   ([`SimdLevel`]).
+//! - Besides rays it answers what is [closest](Bvh::closest_point), what lies [inside](Bvh::solid), what [overlaps](Bvh::overlapping) a region or
+//!   [another geometry](Bvh::overlapping_pairs), and what a [moving sphere](Bvh::sphere_cast) touches first.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
@@ -64,7 +66,7 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
-pub use query::{Ball, ClosestPoint, Region, Solid, SphereHit};
+pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};
 pub use ray::Ray;
 pub use simd::{SimdLevel, SimdLevelError, Vectorized};
 pub use stats::{Level, NodeView, StructureStats};

@@ -11,6 +11,7 @@ mod surface;
 mod swept_sphere;
 mod triangle_block;
 mod triangle_mesh;
+mod triangle_pair;
 mod watertight;
 
 pub(crate) use block_distances::Frame;
@@ -24,6 +25,7 @@ pub use surface::SurfacePoint;
 pub(crate) use swept_sphere::swept_sphere;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
+pub(crate) use triangle_pair::triangles_touch;
 
 use crate::{Aabb, Hit, Ray, Vec3};
 

@@ -8,6 +8,6 @@ mod sphere_cast;
 mod visit;
 
 pub use closest_point::ClosestPoint;
-pub use overlap::{Ball, Region};
+pub use overlap::{Ball, Frustum, Region};
 pub use solid::Solid;
 pub use sphere_cast::SphereHit;

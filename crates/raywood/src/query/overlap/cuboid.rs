@@ -2,8 +2,8 @@
 
 use super::{Region, Touch, private::Prepare};
 use crate::geometry::{TriangleBlock, triangle_overlaps};
-use crate::simd::{Float, Simd};
-use crate::structures::wide::search::{Planes, lanes};
+use crate::simd::Simd;
+use crate::structures::wide::search::{Planes, boxes_touching, lanes};
 use crate::{Aabb, Geometry, Vec3};
 
 /// What touches a box are the triangles with a point in it, within `2^-48` of the largest coordinate, and of other primitives those that [say so](Geometry::overlaps).
@@ -21,13 +21,7 @@ impl Prepare for Aabb {
 impl Touch for Aabb {
     #[inline(always)]
     fn boxes<S: Simd>(&self, simd: S, planes: &Planes) -> u32 {
-        let mut touching = u32::MAX;
-        for (axis, [least, greatest]) in planes.iter().enumerate() {
-            let (min, max) = (simd.splat16(self.min[axis]), simd.splat16(self.max[axis]));
-            touching &=
-                simd.load16(least).less_or_equal(max) & min.less_or_equal(simd.load16(greatest));
-        }
-        touching
+        boxes_touching(simd, planes, self)
     }
 
     #[inline(always)]

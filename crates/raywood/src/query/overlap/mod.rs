@@ -5,10 +5,14 @@
 
 mod ball;
 mod cuboid;
+mod frustum;
+mod pairs;
+mod triangle;
 
 use std::ops::ControlFlow;
 
 pub use ball::Ball;
+pub use frustum::Frustum;
 
 use crate::geometry::TriangleBlock;
 use crate::simd::{Kernel, Simd, dispatch_on};
@@ -16,7 +20,8 @@ use crate::structures::WideNode;
 use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes, planes};
 use crate::{Bvh, Geometry, WideBvh, parallel};
 
-/// A region of space that primitives can touch: an [`Aabb`](crate::Aabb) or a [`Ball`]. What each counts as touching is said with it.
+/// A region of space that primitives can touch: an [`Aabb`](crate::Aabb), a [`Ball`], a [`Frustum`], or a
+/// triangle, `[Vec3; 3]`. What each counts as touching is said with it.
 ///
 /// Regions are solid: what lies inside touches them. A region that is empty, or not made of finite numbers where it says so, is touched by nothing.
 pub trait Region: Sync + private::Prepare {}

@@ -7,6 +7,7 @@ mod collapse;
 mod flight;
 mod node;
 mod packet;
+pub(crate) mod pairs;
 pub(crate) mod search;
 mod single;
 mod sink;

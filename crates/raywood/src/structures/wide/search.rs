@@ -143,6 +143,18 @@ fn end_of_keys(limit: f32) -> f32 {
     limit + limit.abs() * (32.0 * f32::EPSILON) + f32::MIN_POSITIVE
 }
 
+/// The boxes that touch another one, which is finite, as a set of lanes.
+#[inline(always)]
+pub(crate) fn boxes_touching<S: Simd>(simd: S, planes: &Planes, bounds: &Aabb) -> u32 {
+    let mut touching = u32::MAX;
+    for (axis, [least, greatest]) in planes.iter().enumerate() {
+        let (min, max) = (simd.splat16(bounds.min[axis]), simd.splat16(bounds.max[axis]));
+        touching &=
+            simd.load16(least).less_or_equal(max) & min.less_or_equal(simd.load16(greatest));
+    }
+    touching
+}
+
 /// The lanes of a set.
 #[inline(always)]
 pub(crate) fn lanes(set: u32) -> impl Iterator<Item = usize> {

@@ -1,0 +1,144 @@
+//! The frustum as a region: what a camera sees, or any convex space between six planes.
+
+use super::{Region, Touch, private::Prepare};
+use crate::double::{Double3, add, cross, dot, double, scale, sub};
+use crate::geometry::TriangleBlock;
+use crate::simd::Simd;
+use crate::structures::wide::search::{Planes, lanes};
+use crate::{Geometry, Vec3};
+
+/// The space between six planes, such as what a camera sees, as a [`Region`].
+///
+/// What touches it are the triangles with a point in it, within `2^-40` of the largest coordinate, and of other primitives those whose boxes are not
+/// beyond one of the planes. If a number of it is not finite nothing touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frustum {
+    /// Of each plane the normal, inwards, and the offset.
+    planes: [(Double3, f64); 6],
+}
+
+impl Frustum {
+    /// The points with `a x + b y + c z + d >= 0` for all planes `[a, b, c, d]`.
+    pub fn from_planes(planes: [[f32; 4]; 6]) -> Self {
+        Self { planes: planes.map(|[a, b, c, d]| (double(Vec3::new(a, b, c)), f64::from(d))) }
+    }
+
+    /// The frustum with the given corners: four around its front, and behind them, in the same order, four around its back. Each face is the plane along both
+    /// of its diagonals, so corners should lie in one.
+    pub fn from_corners<P: Into<Vec3>>(corners: [P; 8]) -> Self {
+        let corners = corners.map(|corner| double(corner.into()));
+        let middle = scale(0.125, corners.into_iter().fold([0.0; 3], add));
+        let faces: [[usize; 4]; 6] =
+            [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        let planes = faces.map(|face| {
+            let [a, b, c, d] = face.map(|number| corners[number]);
+            let normal = cross(sub(c, a), sub(d, b));
+            let center = scale(0.25, add(add(a, b), add(c, d)));
+            let side = dot(normal, sub(middle, center)).signum();
+            let normal = scale(side, normal);
+            (normal, -dot(normal, center))
+        });
+        Self { planes }
+    }
+}
+
+impl Region for Frustum {}
+
+impl Prepare for Frustum {
+    fn prepare(&self, reach: f32) -> Option<impl Touch> {
+        let is_finite = |(normal, offset): &(Double3, f64)| {
+            dot(*normal, *normal).is_finite() && offset.is_finite()
+        };
+        self.planes.iter().all(is_finite).then(|| {
+            // Each further out by what rounding may take.
+            let planes = self.planes.map(|(normal, offset)| {
+                let size = normal[0].abs() + normal[1].abs() + normal[2].abs();
+                (normal, offset + SLACK * (size * f64::from(reach) + offset.abs()))
+            });
+            Prepared { planes }
+        })
+    }
+}
+
+/// The rounding of heights above planes, per unit of their largest term.
+const SLACK: f64 = 1.0 / (1u64 << 42) as f64;
+
+/// A frustum a little larger than given.
+struct Prepared {
+    planes: [(Double3, f64); 6],
+}
+
+impl Touch for Prepared {
+    #[inline(always)]
+    fn boxes<S: Simd>(&self, _: S, [x, y, z]: &Planes) -> u32 {
+        let mut touching = 0;
+        for (lane, (least, greatest)) in x[0].iter().zip(&x[1]).enumerate() {
+            // Not those that are not there.
+            touching |= u32::from(least <= greatest) << lane;
+        }
+        for (normal, offset) in &self.planes {
+            // The corner that lies farthest inwards.
+            let farthest = normal.map(|n| usize::from(n > 0.0));
+            let (x, y, z) = (&x[farthest[0]], &y[farthest[1]], &z[farthest[2]]);
+            for lane in lanes(touching) {
+                let corner = [f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane])];
+                touching &= !(u32::from(dot(*normal, corner) + offset < 0.0) << lane);
+            }
+        }
+        touching
+    }
+
+    #[inline(always)]
+    fn triangles<S: Simd>(&self, _: S, block: &TriangleBlock, chosen: u32) -> u32 {
+        let mut touching = 0;
+        for lane in lanes(chosen) {
+            touching |= u32::from(self.holds_part_of(block.corners(lane))) << lane;
+        }
+        touching
+    }
+
+    fn primitive<G: Geometry>(&self, geometry: &G, primitive: u32) -> bool {
+        let bounds = geometry.bounds(primitive);
+        let (min, max) = (double(bounds.min), double(bounds.max));
+        self.planes.iter().all(|(normal, offset)| {
+            let farthest = [0, 1, 2].map(|i| if normal[i] > 0.0 { max[i] } else { min[i] });
+            dot(*normal, farthest) + offset >= 0.0
+        })
+    }
+}
+
+impl Prepared {
+    /// Whether something is left of a triangle that is cut off at each plane (Sutherland and Hodgman 1974).
+    #[inline(never)]
+    fn holds_part_of(&self, corners: [Vec3; 3]) -> bool {
+        // Each plane adds a corner at most.
+        let mut polygon = [[0.0; 3]; 9];
+        let mut count = 3;
+        for (place, corner) in polygon.iter_mut().zip(corners) {
+            *place = double(corner);
+        }
+        for (normal, offset) in &self.planes {
+            let height = |p: Double3| dot(*normal, p) + offset;
+            let whole = polygon;
+            let mut kept = 0;
+            let mut keep = |corner: Double3| {
+                if let Some(place) = polygon.get_mut(kept) {
+                    *place = corner;
+                    kept += 1;
+                }
+            };
+            for number in 0..count {
+                let (p, q) = (whole[number], whole[(number + 1) % count]);
+                let (h, k) = (height(p), height(q));
+                if h >= 0.0 {
+                    keep(p);
+                }
+                if (h < 0.0) != (k < 0.0) {
+                    keep(add(p, scale(h / (h - k), sub(q, p))));
+                }
+            }
+            count = kept;
+        }
+        count > 0
+    }
+}
