@@ -1,6 +1,7 @@
 //! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays and points that look for trouble,
 //! pseudo-random numbers, image comparison, well-formed pages. Not published.
 
+pub mod closed;
 pub mod distance;
 pub mod html;
 pub mod image;

@@ -174,3 +174,39 @@ pub fn check_occluded(mesh: &TriangleMesh, ray: &Ray, answer: bool) -> Result<()
         }
     }
 }
+
+/// Checks an answer to an all-hits query, or with `k` to one for the nearest `k` hits; an error says what is wrong with it.
+pub fn check_all(mesh: &TriangleMesh, ray: &Ray, hits: &[Hit], k: usize) -> Result<(), String> {
+    let count = mesh.triangles().len() as u32;
+    if hits.len() > k || !ray.is_valid() && !hits.is_empty() {
+        return Err(format!("{} hits of at most {k} with {ray:?}", hits.len()));
+    }
+    let is_sorted = |pair: &[Hit]| (pair[0].t, pair[0].primitive) < (pair[1].t, pair[1].primitive);
+    if let Some(pair) = hits.windows(2).find(|pair| !is_sorted(pair)) {
+        return Err(format!("not in order: {pair:?} with {ray:?}"));
+    }
+    let mut answered = vec![false; count as usize];
+    let mut farthest = f64::NEG_INFINITY;
+    for hit in hits {
+        if hit.primitive >= count || std::mem::replace(&mut answered[hit.primitive as usize], true)
+        {
+            return Err(format!("{hit:?} of {count} triangles, or twice, with {ray:?}"));
+        }
+        if !(ray.t_min <= hit.t && hit.t < ray.t_max) {
+            return Err(format!("{hit:?} outside of the interval of {ray:?}"));
+        }
+        let own = crossing(mesh, hit.primitive, ray);
+        if !own.allows(hit.t) {
+            return Err(format!("{hit:?} where the triangle is crossed at {own:?} by {ray:?}"));
+        }
+        farthest = f64::from(hit.t) - own.t_tolerance;
+    }
+
+    // What is not there must not be certain, or else not certainly nearer than the farthest.
+    let limit = if hits.len() < k { f64::INFINITY } else { farthest };
+    let missed = (0..count)
+        .filter(|&primitive| ray.is_valid() && !answered[primitive as usize])
+        .map(|primitive| crossing(mesh, primitive, ray))
+        .find(|crossing| crossing.is_certain(ray) && crossing.t + crossing.t_tolerance < limit);
+    missed.map_or(Ok(()), |missed| Err(format!("missed {missed:?} with {ray:?}")))
+}

@@ -77,7 +77,7 @@ pub fn grid_box(cells: u32, min: Vec3, max: Vec3) -> TriangleMesh {
 }
 
 /// The same mesh with every vertex mapped.
-pub fn mapped(original: &TriangleMesh, map: impl Fn(Vec3) -> Vec3) -> TriangleMesh {
+pub fn mapped(original: &TriangleMesh, mut map: impl FnMut(Vec3) -> Vec3) -> TriangleMesh {
     mesh(original.positions().iter().map(|&p| map(p)).collect(), original.triangles().to_vec())
 }
 
