@@ -23,6 +23,8 @@
 //!   ([`SimdLevel`]).
 //! - Besides rays it answers what is [closest](Bvh::closest_point), what lies [inside](Bvh::solid), what [overlaps](Bvh::overlapping) a region or
 //!   [another geometry](Bvh::overlapping_pairs), and what a [moving sphere](Bvh::sphere_cast) touches first.
+//! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
+//!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
@@ -66,6 +68,7 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
+pub use query::{AcceptAll, Face, HitFilter, HitLists, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};
 pub use ray::Ray;
 pub use simd::{SimdLevel, SimdLevelError, Vectorized};

@@ -79,6 +79,25 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn intersect_all(
+        &self,
+        primitive: u32,
+        ray: &PreparedRay,
+        found: &mut dyn FnMut(PrimitiveHit),
+    ) {
+        match self.in_second(primitive) {
+            None => self.first.intersect_all(primitive, ray, found),
+            Some(primitive) => self.second.intersect_all(primitive, ray, found),
+        }
+    }
+
+    fn mask(&self, primitive: u32) -> u32 {
+        match self.in_second(primitive) {
+            None => self.first.mask(primitive),
+            Some(primitive) => self.second.mask(primitive),
+        }
+    }
+
     #[inline(always)]
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         match self.in_second(hit.primitive) {

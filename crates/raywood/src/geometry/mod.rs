@@ -3,6 +3,7 @@
 mod block_distances;
 mod clip;
 mod closest_point;
+mod crossing;
 mod joined;
 mod prepared_ray;
 mod separation;
@@ -17,6 +18,7 @@ mod watertight;
 pub(crate) use block_distances::Frame;
 pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
+pub(crate) use crossing::{cross_triangle, meets_front};
 pub use joined::Joined;
 pub use prepared_ray::PreparedRay;
 pub(crate) use separation::triangle_overlaps;
@@ -101,6 +103,35 @@ pub trait Geometry: Sync {
         0.0
     }
 
+    /// Tells `found` of every hit of the ray with this primitive at `ray.t_min <= t < ray.t_max`, in any order: for
+    /// [all hits](crate::Bvh::all_hits).
+    ///
+    /// The default asks [`intersect`](Self::intersect) again from just beyond each hit, at most 16 times. A primitive that a ray crosses more often, or that
+    /// can tell all at once, should say so itself. Not asked of [triangles](Self::triangle), which a ray crosses once.
+    fn intersect_all(
+        &self,
+        primitive: u32,
+        ray: &PreparedRay,
+        found: &mut dyn FnMut(PrimitiveHit),
+    ) {
+        let mut rest = *ray;
+        for _ in 0..16 {
+            let Some(hit) = self.intersect(primitive, &rest) else { return };
+            found(hit);
+            rest.t_min = hit.t.next_up();
+            if rest.t_min >= rest.t_max {
+                return;
+            }
+        }
+    }
+
+    /// The groups that the primitive belongs to, a bit each: a query [with a mask](crate::QueryOptions::mask) sees it if they have a bit in common. The default
+    /// says all.
+    fn mask(&self, primitive: u32) -> u32 {
+        let _ = primitive;
+        u32::MAX
+    }
+
     /// The point that a ray hit: where it lies, how exactly that is known, and the surface's normal there.
     ///
     /// `hit` must be an answer that this geometry gave for `ray`; it may panic on a primitive that does not exist.
@@ -140,6 +171,19 @@ impl<G: Geometry + ?Sized> Geometry for &G {
 
     fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
         (**self).winding_number(primitive, point)
+    }
+
+    fn intersect_all(
+        &self,
+        primitive: u32,
+        ray: &PreparedRay,
+        found: &mut dyn FnMut(PrimitiveHit),
+    ) {
+        (**self).intersect_all(primitive, ray, found);
+    }
+
+    fn mask(&self, primitive: u32) -> u32 {
+        (**self).mask(primitive)
     }
 
     #[inline(always)]

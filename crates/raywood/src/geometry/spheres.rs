@@ -68,6 +68,27 @@ impl Spheres {
     pub fn total_bounds(&self) -> Aabb {
         self.spheres.iter().map(|&(c, r)| sphere_bounds(c, r)).fold(Aabb::EMPTY, Aabb::union)
     }
+
+    /// Where the line of a ray enters and leaves a sphere.
+    #[inline]
+    fn crossings(&self, primitive: u32, ray: &PreparedRay) -> Option<[f32; 2]> {
+        let (center, radius) = self.spheres[primitive as usize];
+        let (o, d, c, r) =
+            (double(ray.origin), double(ray.direction), double(center), f64::from(radius));
+
+        // Start from the point of the ray nearest the centre: the discriminant is then a difference of small numbers
+        // however far away the sphere is (Haines et al., Ray Tracing Gems, chapter 7).
+        let to_center = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
+        let dd = dot(d, d);
+        let nearest = dot(to_center, d) / dd;
+        let offset = [0, 1, 2].map(|i| to_center[i] - nearest * d[i]);
+        let remaining = r * r - dot(offset, offset);
+        if remaining <= 0.0 || remaining.is_nan() {
+            return None;
+        }
+        let half_chord = (remaining / dd).sqrt();
+        Some([nearest - half_chord, nearest + half_chord].map(|t| t as f32))
+    }
 }
 
 /// How thick a sphere's surface is where it is asked for cells that it passes through, per unit of its coordinates: some roundings of points on it.
@@ -112,29 +133,8 @@ impl Geometry for Spheres {
 
     #[inline]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
-        let (center, radius) = self.spheres[primitive as usize];
-        let double = |v: Vec3| v.to_array().map(f64::from);
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let (o, d, c, r) =
-            (double(ray.origin), double(ray.direction), double(center), f64::from(radius));
-
-        // Start from the point of the ray nearest the centre: the discriminant is then a difference of small numbers
-        // however far away the sphere is (Haines et al., Ray Tracing Gems, chapter 7).
-        let to_center = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
-        let dd = dot(d, d);
-        let nearest = dot(to_center, d) / dd;
-        let offset = [0, 1, 2].map(|i| to_center[i] - nearest * d[i]);
-        let remaining = r * r - dot(offset, offset);
-        if remaining <= 0.0 || remaining.is_nan() {
-            return None;
-        }
-        let half_chord = (remaining / dd).sqrt();
-
         // The near crossing if it counts, else the far one: the ray may start inside.
-        let t = [nearest - half_chord, nearest + half_chord]
-            .map(|t| t as f32)
-            .into_iter()
-            .find(|&t| ray.accepts(t))?;
+        let t = self.crossings(primitive, ray)?.into_iter().find(|&t| ray.accepts(t))?;
         Some(PrimitiveHit { t, u: 0.0, v: 0.0 })
     }
 
@@ -156,6 +156,19 @@ impl Geometry for Spheres {
         let outwards = sub(double(point), double(center));
         let is_inside = dot(outwards, outwards) < f64::from(radius) * f64::from(radius);
         f64::from(u8::from(is_inside))
+    }
+
+    fn intersect_all(
+        &self,
+        primitive: u32,
+        ray: &PreparedRay,
+        found: &mut dyn FnMut(PrimitiveHit),
+    ) {
+        // Both count even where rounding makes them one, so that in and out keep their turns.
+        let crossings = self.crossings(primitive, ray).into_iter().flatten();
+        crossings
+            .filter(|&t| ray.accepts(t))
+            .for_each(|t| found(PrimitiveHit { t, u: 0.0, v: 0.0 }));
     }
 
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {

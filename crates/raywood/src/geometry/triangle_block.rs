@@ -78,8 +78,14 @@ impl TriangleBlock {
     /// The hit of a ray with the triangle in a lane, as every traversal sees it.
     pub(crate) fn intersect_one(&self, ray: &PreparedRay, lane: usize) -> Option<PrimitiveHit> {
         let [a, b, c] = self.corners(lane);
-        let bounds = Aabb { min: a.min(b).min(c), max: a.max(b).max(c) };
-        inside_own_bounds(ray, intersect_triangle(ray, a, b, c)?, &bounds)
+        inside_own_bounds(ray, intersect_triangle(ray, a, b, c)?, &self.bounds(lane))
+    }
+
+    /// The box around the triangle in a lane.
+    #[inline(always)]
+    pub(crate) fn bounds(&self, lane: usize) -> Aabb {
+        let [a, b, c] = self.corners(lane);
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
     /// The distances of hits.

@@ -1,13 +1,19 @@
-//! Questions about space: what is near, what overlaps, what a moving sphere touches first. One operation per file, each a part of
-//! [`Bvh`](crate::Bvh).
+//! Queries beyond the closest and any hit, of rays and of space, one operation per file; each a part of [`Bvh`](crate::Bvh).
 
+mod all_hits;
 mod closest_point;
+mod filtered;
+mod hit_lists;
+mod nearest_hits;
+mod options;
 mod overlap;
 mod solid;
 mod sphere_cast;
 mod visit;
 
 pub use closest_point::ClosestPoint;
+pub use hit_lists::HitLists;
+pub use options::{AcceptAll, Face, HitFilter, QueryOptions};
 pub use overlap::{Ball, Frustum, Region};
 pub use solid::Solid;
 pub use sphere_cast::SphereHit;

@@ -43,11 +43,28 @@ impl Nearest {
     /// Takes a hit if it is nearer, or equally near with a lower number.
     #[inline]
     pub(crate) fn offer(&mut self, primitive: u32, hit: PrimitiveHit) {
-        let wins = |best: Hit| hit.t < best.t || (hit.t == best.t && primitive < best.primitive);
-        if self.best.is_none_or(wins) {
-            self.best = Some(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
-            self.t_max = hit.t;
+        if self.is_beaten_by(primitive, hit.t) {
+            self.take(Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: 0 });
         }
+    }
+
+    /// Whether a hit would be nearer, or equally near with a lower number.
+    #[inline(always)]
+    pub(crate) fn is_beaten_by(&self, primitive: u32, t: f32) -> bool {
+        self.best.is_none_or(|best| t < best.t || (t == best.t && primitive < best.primitive))
+    }
+
+    /// Takes a hit that is nearer than all before.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, hit: Hit) {
+        self.best = Some(hit);
+        self.t_max = hit.t;
+    }
+
+    /// Whether there is a hit.
+    #[inline(always)]
+    pub(crate) fn found(&self) -> bool {
+        self.best.is_some()
     }
 
     /// Where looking further is of no use: the ray's end, later the closest hit so far. What begins exactly there may still

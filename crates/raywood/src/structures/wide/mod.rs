@@ -3,7 +3,9 @@
 mod batch;
 mod build;
 mod check;
+mod chosen;
 mod collapse;
+mod crossings;
 mod flight;
 mod node;
 mod packet;
@@ -19,14 +21,18 @@ pub(crate) mod sweep;
 mod tests;
 pub(crate) mod winding;
 
+use std::ops::ControlFlow;
+
 use super::AccelerationStructure;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, SimdLevel, dispatch_on};
 use crate::{
-    Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, Probe, Ray, TriangleTest,
+    Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView, PreparedRay, Probe, Ray, TriangleTest,
     ValidationError,
 };
 use crate::{HitColumnsMut, Vec3};
+pub(crate) use chosen::Chooser;
+pub(crate) use crossings::HitVisitor;
 use node::Reference;
 pub(crate) use node::WideNode;
 use sink::Sink;
@@ -117,6 +123,35 @@ impl WideBvh {
             TriangleTest::Fast => dispatch_on(
                 self.level,
                 batch::Any::<_, _, true> { tree: self, geometry, rays, occluded },
+            ),
+        }
+    }
+
+    /// Tells a visitor of every hit of a ray, each crossing of a closed surface once, in any order; until it has enough. Always by the watertight test.
+    pub(crate) fn visit_crossings<G: Geometry, V: HitVisitor>(
+        &self,
+        geometry: &G,
+        ray: &PreparedRay,
+        visitor: &mut V,
+    ) -> ControlFlow<()> {
+        dispatch_on(self.level, crossings::Crossings { tree: self, geometry, ray, visitor })
+    }
+
+    /// The closest of the hits that count; with `ANY`, any of them.
+    pub(crate) fn choose_hit<G: Geometry, C: Chooser, const ANY: bool>(
+        &self,
+        geometry: &G,
+        ray: &PreparedRay,
+        chooser: &mut C,
+    ) -> Option<Hit> {
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                chosen::Chosen::<_, _, ANY, false> { tree: self, geometry, ray, chooser },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                chosen::Chosen::<_, _, ANY, true> { tree: self, geometry, ray, chooser },
             ),
         }
     }

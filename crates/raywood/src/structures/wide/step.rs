@@ -113,7 +113,7 @@ pub(super) fn others<G: Geometry>(geometry: &G, primitives: &[u32], leaf: Refere
 
 /// The lanes of a set.
 #[inline(always)]
-fn lanes(set: u32) -> impl Iterator<Item = usize> {
+pub(super) fn lanes(set: u32) -> impl Iterator<Item = usize> {
     let mut left = set;
     std::iter::from_fn(move || {
         let lane = left.trailing_zeros();

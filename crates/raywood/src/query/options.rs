@@ -1,0 +1,148 @@
+//! Which hits count for a query: sides of the surface, groups of primitives, one to skip, a filter of one's own.
+
+use crate::geometry::meets_front;
+use crate::structures::Chooser;
+use crate::{Geometry, Hit, PreparedRay, Ray};
+
+/// A side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Face {
+    /// The side that the normal points to: of a triangle, the one from which its corners are seen counter-clockwise; of a sphere, the outside.
+    Front,
+    /// The other side.
+    Back,
+}
+
+/// Says of each hit whether it counts. Every `FnMut(&Hit) -> bool` does.
+pub trait HitFilter {
+    /// Whether the hit counts.
+    fn accepts(&mut self, hit: &Hit) -> bool;
+}
+
+impl<F: FnMut(&Hit) -> bool> HitFilter for F {
+    #[inline(always)]
+    fn accepts(&mut self, hit: &Hit) -> bool {
+        self(hit)
+    }
+}
+
+/// The filter that lets every hit count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AcceptAll;
+
+impl HitFilter for AcceptAll {
+    #[inline(always)]
+    fn accepts(&mut self, _: &Hit) -> bool {
+        true
+    }
+}
+
+/// What lets a hit count, for one query: [`intersect_with`](crate::Bvh::intersect_with), [`occluded_with`](crate::Bvh::occluded_with),
+/// [`all_hits_with`](crate::Bvh::all_hits_with), [`nearest_hits_with`](crate::Bvh::nearest_hits_with). A hit that does not count is as if it
+/// were not there: the ray goes on behind it.
+///
+/// Plain queries ask nothing of this, masks included, and pay nothing for it.
+///
+/// ```
+/// use raywood::{Bvh, Face, QueryOptions, Ray, Spheres};
+///
+/// let bvh = Bvh::build(Spheres::new(vec![([0.0; 3].into(), 1.0), ([5.0, 0.0, 0.0].into(), 1.0)])?)?;
+/// let ray = Ray::new([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+/// let t = |options| bvh.intersect_with(&ray, options).map(|hit| hit.t);
+/// assert_eq!(t(QueryOptions::new()), Some(2.0));
+/// assert_eq!(t(QueryOptions::new().cull(Face::Front)), Some(4.0));
+/// assert_eq!(t(QueryOptions::new().skip(0)), Some(7.0));
+///
+/// let far = bvh.intersect_with(&ray, QueryOptions::new().filter(|hit| hit.t > 8.0));
+/// assert_eq!(far.map(|hit| hit.t), Some(9.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct QueryOptions<F = AcceptAll> {
+    cull: Option<Face>,
+    mask: u32,
+    skip: Option<u32>,
+    filter: F,
+}
+
+impl Default for QueryOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl QueryOptions {
+    /// Every hit counts, except of primitives whose [mask](Geometry::mask) is zero.
+    pub fn new() -> Self {
+        Self { cull: None, mask: u32::MAX, skip: None, filter: AcceptAll }
+    }
+}
+
+impl<F> QueryOptions<F> {
+    /// Hits of this side of the surface do not count.
+    pub fn cull(self, face: Face) -> Self {
+        Self { cull: Some(face), ..self }
+    }
+
+    /// Only primitives count whose [mask](Geometry::mask) has a bit in common with this one.
+    pub fn mask(self, mask: u32) -> Self {
+        Self { mask, ..self }
+    }
+
+    /// This primitive does not count: the one that a ray starts on, where its point is known by other means than [a hit](crate::SurfacePoint).
+    pub fn skip(self, primitive: u32) -> Self {
+        Self { skip: Some(primitive), ..self }
+    }
+
+    /// Only those hits count that the filter accepts, as of leaves drawn on larger triangles. It is asked last, in any order, of no hit twice, and not of all: a
+    /// closest-hit query does not ask of what lies behind a hit that counts. Give `&mut filter` to keep it.
+    ///
+    /// Answers are as certain as the filter: one that always says the same of the same hit makes them independent of order. A panic in it passes through and
+    /// leaves everything usable.
+    pub fn filter<N: FnMut(&Hit) -> bool>(self, filter: N) -> QueryOptions<N> {
+        let Self { cull, mask, skip, filter: _ } = self;
+        QueryOptions { cull, mask, skip, filter }
+    }
+}
+
+impl<F: HitFilter> QueryOptions<F> {
+    /// The options at work on a ray.
+    pub(super) fn chooser<'a, G: Geometry>(
+        self,
+        geometry: &'a G,
+        ray: &'a PreparedRay,
+    ) -> OptionChooser<'a, G, F> {
+        OptionChooser { options: self, geometry, ray }
+    }
+}
+
+/// Chooses hits of a ray by options.
+pub(super) struct OptionChooser<'a, G, F> {
+    options: QueryOptions<F>,
+    geometry: &'a G,
+    ray: &'a PreparedRay,
+}
+
+impl<G: Geometry, F: HitFilter> Chooser for OptionChooser<'_, G, F> {
+    #[inline(always)]
+    fn counts(&mut self, hit: &Hit) -> bool {
+        let Self { options, geometry, ray } = self;
+        options.skip != Some(hit.primitive)
+            && options.mask & geometry.mask(hit.primitive) != 0
+            && options.cull.is_none_or(|culled| face(*geometry, ray, hit) != culled)
+            && options.filter.accepts(hit)
+    }
+}
+
+/// Which side of the surface a ray hits.
+fn face<G: Geometry>(geometry: &G, ray: &PreparedRay, hit: &Hit) -> Face {
+    let front = match geometry.triangle(hit.primitive) {
+        Some(corners) => meets_front(ray, corners),
+        None => {
+            let &PreparedRay { origin, direction, t_min, t_max, .. } = ray;
+            let ray = Ray { origin, t_min, direction, t_max };
+            geometry.surface_point(&ray, hit).normal.dot(direction) < 0.0
+        }
+    };
+    if front { Face::Front } else { Face::Back }
+}
