@@ -106,6 +106,30 @@ fn all_rays_from_one_point_agree_whether_it_is_inside() {
     assert!(inside > 2000 && outside > 2000, "{inside} inside, {outside} outside");
 }
 
+#[test]
+fn rays_that_start_very_near_a_face_know_their_side() {
+    // A box, upright and slanted, with a face through zero, where small distances can be told apart. Rays run along the face, hardly turned to it or away.
+    let mut rng = Rng::new(4);
+    let cube = shapes::grid_box(1, Vec3::new(0.0, -1.0, -1.0), Vec3::new(2.0, 1.0, 1.0));
+    for slant in [0.0, 0.5, -0.25] {
+        let slanted = |p: Vec3| Vec3::new(p.x + slant * p.y, p.y, p.z);
+        let bvh = Bvh::build(shapes::mapped(&cube, slanted)).expect("it builds");
+        for i in 0..200_000 {
+            let small = |rng: &mut Rng| 10f32.powf(rng.range(-13.0, -2.0));
+            let (off, tilt) = (small(&mut rng), small(&mut rng));
+            let inside = i % 2 == 0;
+            let off = if inside { off } else { -off };
+            let flat = 1e-4 * off.abs() * rng.in_cube();
+            let from = slanted(Vec3::new(off, flat.y, 1e6 * flat.z));
+            let along = rng.in_cube();
+            let tilt = if i % 4 < 2 { tilt } else { -tilt };
+            let (y, z) = if i % 8 < 4 { (along.y, along.z) } else { (tilt * along.y, 1.0) };
+            let ray = Ray::new(from, slanted(Vec3::new(tilt, y, z)));
+            assert_eq!(bvh.crossings(&ray) % 2 == 1, inside, "{ray:?}");
+        }
+    }
+}
+
 /// Whether a point may lie on a triangle, up to a distance.
 fn is_near(mesh: &TriangleMesh, point: Vec3, distance: f64) -> bool {
     let double = |p: Vec3| p.to_array().map(f64::from);
