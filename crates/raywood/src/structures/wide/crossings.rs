@@ -71,7 +71,12 @@ impl<G: Geometry, V: HitVisitor> Kernel for Crossings<'_, G, V> {
                 top += if V::LIMIT_SHRINKS {
                     simd.push_sorted(met, near, &node.children, (keys, items), top).0
                 } else {
-                    simd.push_chosen(met, &node.children, items, top).0
+                    let (count, _) = simd.push_chosen(met, &node.children, items, top);
+                    // All of them will be visited.
+                    for &item in &items[top..top + count] {
+                        simd.prefetch(tree.address(Reference(item)));
+                    }
+                    count
                 };
             }
 
