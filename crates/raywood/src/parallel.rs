@@ -59,6 +59,25 @@ pub(crate) fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Send + Sync) -> Ve
     (0..n).map(f).collect()
 }
 
+/// How many threads there are. For how work is divided, never for what comes out.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "rayon"))]
+    1
+}
+
+/// Copies a slice to another of the same length.
+pub(crate) fn copy<T: Copy + Send + Sync>(from: &[T], to: &mut [T]) {
+    debug_assert_eq!(from.len(), to.len());
+    #[cfg(feature = "rayon")]
+    to.par_chunks_mut(GRAIN)
+        .zip(from.par_chunks(GRAIN))
+        .for_each(|(to, from)| to.copy_from_slice(from));
+    #[cfg(not(feature = "rayon"))]
+    to.copy_from_slice(from);
+}
+
 /// Folds a slice in pieces and merges these into one; `step` and `merge` must not care about order.
 pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     items: &[T],
@@ -81,6 +100,28 @@ pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     }
     let _ = (merge, GRAIN);
     fold_piece(items)
+}
+
+/// Folds the numbers from 0 to `n-1` in pieces and merges these into one; `step` and `merge` must not care about order.
+pub(crate) fn fold_numbers<A: Copy + Send + Sync>(
+    n: usize,
+    start: A,
+    step: impl Fn(&mut A, usize) + Sync,
+    merge: impl Fn(&mut A, &A) + Sync,
+) -> A {
+    let fold_piece = |piece: usize| {
+        let mut accumulator = start;
+        (piece * GRAIN..n.min((piece + 1) * GRAIN)).for_each(|i| step(&mut accumulator, i));
+        accumulator
+    };
+    let pieces = 0..n.div_ceil(GRAIN);
+    #[cfg(feature = "rayon")]
+    let pieces: Vec<A> = pieces.into_par_iter().map(fold_piece).collect();
+    #[cfg(not(feature = "rayon"))]
+    let pieces = pieces.map(fold_piece);
+    let mut whole = start;
+    pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
+    whole
 }
 
 /// Has `f` write the outputs beside a piece of the inputs, piece by piece. Both slices have the same length.

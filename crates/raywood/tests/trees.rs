@@ -1,8 +1,9 @@
 //! The invariants of trees: any input, any number of threads.
 
+use raywood::AccelerationStructure;
 use raywood::{
-    Aabb, BuildError, BuildOptions, BuildPreset, Bvh2, Counts, Geometry, Hit, Ray, Structure,
-    StructureKind, TriangleMesh, Vec3,
+    Aabb, BuildError, BuildOptions, BuildPreset, Builder, Bvh2, Counts, Geometry, Hit, Ray,
+    Structure, StructureKind, TriangleMesh, Vec3, WideBvh,
 };
 use raywood::{PreparedRay, PrimitiveHit, SurfacePoint};
 use raywood_testkit::{nasty, shapes};
@@ -75,27 +76,93 @@ fn a_million_identical_centers() {
     assert!(stats.depth <= 64, "{stats}");
 }
 
-#[test]
-fn extreme_boxes() {
+/// Boxes of numbers at the ends of their range.
+fn extreme_boxes() -> Vec<Vec<Aabb>> {
     let huge = f32::MAX;
-    build(vec![Aabb::new([-huge; 3], [huge; 3]); 100]);
-    build((0..100).map(|i| Aabb::new([-huge; 3], [i as f32; 3])).collect());
-    build((0..100).map(|i| Aabb::new([i as f32 * 1e-42; 3], [i as f32 * 1e-42; 3])).collect());
-    let mut boxes: Vec<Aabb> =
+    let mut with_a_huge_one: Vec<Aabb> =
         (0..1000).map(|i| Aabb::new([i as f32 * 1e-3; 3], [i as f32 * 1e-3 + 1e-4; 3])).collect();
-    boxes.push(Aabb::new([-huge; 3], [huge; 3]));
-    build(boxes);
+    with_a_huge_one.push(Aabb::new([-huge; 3], [huge; 3]));
+    vec![
+        vec![Aabb::new([-huge; 3], [huge; 3]); 100],
+        (0..100).map(|i| Aabb::new([-huge; 3], [i as f32; 3])).collect(),
+        (0..100)
+            .map(|i| Aabb::new([if i % 2 == 0 { -huge } else { huge }; 3], [huge; 3]))
+            .collect(),
+        (0..100).map(|i| Aabb::new([i as f32 * 1e-42; 3], [i as f32 * 1e-42; 3])).collect(),
+        with_a_huge_one,
+    ]
 }
 
-#[test]
-fn a_series_that_would_make_a_deep_tree() {
-    // Each box a fraction of the last, over the whole range of numbers: splits cut off one at a time.
+/// Each box a fraction of the last, over the whole range of numbers: splits cut off one at a time.
+fn a_series() -> Vec<Aabb> {
     let boxes = (0..2500).map(|i| {
         let x = 2f32.powf(120.0 - 0.1 * i as f32);
         Aabb::new([x, 0.0, 0.0], [x, 1.0, 1.0])
     });
-    let stats = build(boxes.collect()).stats();
+    boxes.collect()
+}
+
+#[test]
+fn extreme_boxes_are_built() {
+    extreme_boxes().into_iter().for_each(|boxes| drop(build(boxes)));
+}
+
+#[test]
+fn a_series_that_would_make_a_deep_tree() {
+    let stats = build(a_series()).stats();
     assert!(stats.depth <= 64, "{stats}");
+}
+
+#[test]
+fn trees_along_a_curve_are_sound_whatever_codes_can_tell_apart() {
+    let mut lists = extreme_boxes();
+    lists.push(a_series());
+    // Far more in one place than a code can tell apart, and in several such places.
+    lists.push(vec![Aabb::new([1.0; 3], [2.0; 3]); 1 << 20]);
+    let places = |i: usize| [(i % 3) as f32 * 1e-3, 0.0, 1.0];
+    lists.push((0..30_000).map(|i| Aabb::new(places(i), places(i))).collect());
+    // A crowd that is small beside its distance to the others.
+    let crowd = |i: usize| [(i % 100) as f32 * 1e-6, (i / 100) as f32 * 1e-6, 0.0];
+    let mut crowded: Vec<_> = (0..10_000).map(|i| Aabb::new(crowd(i), crowd(i))).collect();
+    crowded.push(Aabb::new([1e6; 3], [1e6; 3]));
+    lists.push(crowded);
+    lists.extend((0..20).map(|n| vec![Aabb::new([0.0; 3], [1.0; 3]); n]));
+
+    for boxes in lists {
+        let (n, boxes) = (boxes.len(), Boxes(boxes));
+        for builder in [Builder::Lbvh, Builder::Hlbvh] {
+            for max_leaf_size in [1, 8] {
+                let options = BuildOptions { max_leaf_size, ..Default::default() };
+                let tree = Bvh2::build_by(builder, &boxes, &options).expect("it builds");
+                tree.validate(&boxes).unwrap_or_else(|error| panic!("{builder:?}, {n}: {error}"));
+                let stats = tree.stats();
+                assert!(stats.depth <= 64, "{builder:?}, {n}: {stats}");
+                assert!(stats.max_leaf_primitives <= max_leaf_size, "{builder:?}, {n}: {stats}");
+            }
+            let options = BuildOptions { wide_builder: builder, ..Default::default() };
+            for options in [options, BuildPreset::Fastest.options()] {
+                let tree = WideBvh::build(&boxes, &options).expect("it builds");
+                tree.validate(&boxes).unwrap_or_else(|error| panic!("{builder:?}, {n}: {error}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_crowd_far_from_the_rest_is_divided_by_place() {
+    // Codes of the whole scene put all of the crowd into one cell; halves by number would overlap.
+    let crowd = |i: usize| [(i % 100) as f32 * 1e-6, (i / 100) as f32 * 1e-6, 0.0];
+    let mut boxes: Vec<_> = (0..10_000).map(|i| Aabb::new(crowd(i), crowd(i))).collect();
+    let alone = Bvh2::build_by(Builder::Lbvh, &Boxes(boxes.clone()), &BuildOptions::default());
+    boxes.push(Aabb::new([1e6; 3], [1e6; 3]));
+    let together = Bvh2::build_by(Builder::Lbvh, &Boxes(boxes), &BuildOptions::default());
+    let areas = |tree: &Bvh2, skip: usize| -> f64 {
+        tree.nodes()[skip..].iter().map(|node| node.bounds().half_area()).sum()
+    };
+    // The root and its second child, the far box, aside.
+    let (alone, together) = (alone.expect("it builds"), together.expect("it builds"));
+    let (expected, found) = (areas(&alone, 0), areas(&together, 1));
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} and {expected}");
 }
 
 #[test]
@@ -141,13 +208,16 @@ fn splits_lower_the_expected_cost() {
 fn the_same_tree_for_any_number_of_threads() {
     // Several pieces of the sets that are divided by all threads, and a last one that is not full.
     let mesh = shapes::soup(150_001, 0.02, 2);
-    let build = |threads| -> Bvh2 {
+    let build = |builder, threads| -> Bvh2 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| Bvh2::build(&mesh, &BuildOptions::default()).expect("it builds"))
+        let options = BuildOptions::default();
+        pool.install(|| Bvh2::build_by(builder, &mesh, &options).expect("it builds"))
     };
-    let one = build(1);
-    for threads in [2, 3, 8] {
-        assert!(build(threads) == one, "{threads} threads give another tree");
+    for builder in [Builder::SahBinned, Builder::Lbvh, Builder::Hlbvh] {
+        let one = build(builder, 1);
+        for threads in [2, 3, 8] {
+            assert!(build(builder, threads) == one, "{builder:?}: {threads} threads");
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The builders of binary trees, by name.
 
 use super::driver;
+use super::hlbvh;
+use super::lbvh;
 use super::median::Median;
 use super::midpoint::Midpoint;
 use super::reinsertion;
@@ -21,6 +23,11 @@ pub enum Builder {
     /// Try the splits between a few bins by the surface area heuristic: nearly as good, much faster.
     #[default]
     SahBinned,
+    /// Sort along a space-filling curve and split where the curve turns: the fastest to build, the slowest to trace.
+    Lbvh,
+    /// Groups of neighbours along the curve become leaves, and what is above them is built as by `SahBinned`: much of the speed of the one, most of the quality of
+    /// the other.
+    Hlbvh,
 }
 
 impl Bvh2 {
@@ -35,12 +42,14 @@ impl Bvh2 {
         geometry: &G,
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        let primitives = driver::primitives(geometry)?;
+        let primitives = || driver::primitives(geometry);
         let tree = match builder {
-            Builder::Midpoint => driver::build(primitives, &Midpoint::new(options)),
-            Builder::Median => driver::build(primitives, &Median::new(options)),
-            Builder::SahSweep => driver::build(primitives, &SweepSah::new(options)),
-            Builder::SahBinned => driver::build(primitives, &BinnedSah::new(options)),
+            Builder::Midpoint => driver::build(primitives()?, &Midpoint::new(options)),
+            Builder::Median => driver::build(primitives()?, &Median::new(options)),
+            Builder::SahSweep => driver::build(primitives()?, &SweepSah::new(options)),
+            Builder::SahBinned => driver::build(primitives()?, &BinnedSah::new(options)),
+            Builder::Lbvh => lbvh::build(geometry, options)?,
+            Builder::Hlbvh => hlbvh::build(geometry, options)?,
         };
         Ok(reinsertion::optimize(tree, options))
     }

@@ -7,7 +7,7 @@ use crate::structures::{Bvh2, MAX_DEPTH, Node};
 use crate::{Aabb, BuildError, Geometry, parallel};
 
 /// Sets larger than this build their two halves in parallel.
-const PARALLEL_SUBTREES: usize = 4096;
+pub(super) const PARALLEL_SUBTREES: usize = 4096;
 
 /// Sets larger than this may be divided in parallel, which takes room for as many primitives again.
 pub(super) const LARGE_SET: usize = 1 << 15;
@@ -43,14 +43,16 @@ pub(crate) struct Around {
 }
 
 impl Around {
-    const NOTHING: Self = Self { bounds: PackedAabb::EMPTY, centers: PackedAabb::EMPTY };
+    pub(super) const NOTHING: Self = Self { bounds: PackedAabb::EMPTY, centers: PackedAabb::EMPTY };
 
-    fn include(&mut self, primitive: &Primitive) {
+    /// Makes it what is around another primitive too.
+    pub(super) fn include(&mut self, primitive: &Primitive) {
         self.bounds.grow(primitive.bounds());
         self.centers = self.centers.including(primitive.center());
     }
 
-    fn grow(&mut self, other: &Self) {
+    /// Makes it what is around both.
+    pub(super) fn grow(&mut self, other: &Self) {
         self.bounds.grow(&other.bounds);
         self.centers.grow(&other.centers);
     }
@@ -88,6 +90,37 @@ pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<PackedAa
 /// Every primitive, its bounds checked.
 pub(super) fn primitives<G: Geometry>(geometry: &G) -> Result<Vec<Primitive>, BuildError> {
     map_bounds(geometry, Primitive::new)
+}
+
+/// What is around all primitives, whose bounds are checked. Keeps nothing of each: for those who would rather ask the geometry again.
+pub(super) fn around_all<G: Geometry>(geometry: &G) -> Result<Around, BuildError> {
+    let primitives = geometry.len();
+    if primitives > BuildError::MAX_PRIMITIVES {
+        return Err(BuildError::TooManyPrimitives { primitives });
+    }
+    let start = (Around::NOTHING, usize::MAX);
+    let (around, first_bad) = parallel::fold_numbers(
+        primitives,
+        start,
+        |(around, first_bad), number| {
+            let bounds = geometry.bounds(number as u32);
+            if bounds.is_empty() || !bounds.is_finite() {
+                *first_bad = number.min(*first_bad);
+            }
+            around.include(&Primitive::new(number as u32, bounds.into()));
+        },
+        |(around, first_bad), piece| {
+            around.grow(&piece.0);
+            *first_bad = piece.1.min(*first_bad);
+        },
+    );
+    match first_bad {
+        usize::MAX => Ok(around),
+        number => {
+            let primitive = number as u32;
+            Err(BuildError::BadBounds { primitive, bounds: geometry.bounds(primitive) })
+        }
+    }
 }
 
 /// `f` of every primitive's number and bounds, which are checked.
@@ -130,11 +163,7 @@ pub(super) fn build<S: Splitter>(mut primitives: Vec<Primitive>, splitter: &S) -
     let tree = grow(splitter, Place { set, indices: &mut indices, first: 0, depth: 1 });
     drop((primitives, spare));
 
-    let root = Node::leaf(around.bounds.into(), 0, n as u32);
-    let mut nodes = vec![root; tree.len()];
-    let (root, descendants) = nodes.split_at_mut(1);
-    tree.copy_to(&mut root[0], descendants, 1);
-    Bvh2::from_parts(nodes, indices)
+    Bvh2::from_parts(tree.into_nodes(), indices)
 }
 
 /// What a subtree is built from.
@@ -149,7 +178,7 @@ struct Place<'a> {
 }
 
 /// A subtree that was built: small ones in one piece by one thread, so that nobody has to know beforehand where nodes will lie.
-enum Subtree {
+pub(super) enum Subtree {
     /// All nodes depth first, pair by pair, the root first; numbers of nodes count from it.
     Piece(Vec<Node>),
     /// Two subtrees and the box around both.
@@ -205,9 +234,15 @@ fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
 
 /// Divides a set as the splitter wants to, but in the middle where the tree might else become too deep.
 fn split<S: Splitter>(splitter: &S, set: &mut Set<'_>, depth: usize) -> Option<Split> {
-    // Keep the depth within the traversal's stack: from here on only halving can.
-    let halvings = set.primitives.len().next_power_of_two().trailing_zeros() as usize;
-    if depth + halvings >= MAX_DEPTH { Some(split_at_median(set)) } else { splitter.split(set) }
+    match must_halve(set.primitives.len(), depth) {
+        true => Some(split_at_median(set)),
+        false => splitter.split(set),
+    }
+}
+
+/// Whether only halving, from here on, keeps the depth within the traversal's stack. The set's node lies on level `depth`, from 1.
+pub(super) fn must_halve(count: usize, depth: usize) -> bool {
+    depth + count.next_power_of_two().trailing_zeros() as usize >= MAX_DEPTH
 }
 
 /// The spare room of a set, which small sets do without.
@@ -265,6 +300,25 @@ fn subdivide<S: Splitter>(
 }
 
 impl Subtree {
+    /// The box around it.
+    pub(super) fn bounds(&self) -> PackedAabb {
+        match self {
+            Self::Piece(nodes) => nodes[0].bounds().into(),
+            Self::Pair(bounds, _) => *bounds,
+        }
+    }
+
+    /// All nodes depth first, pair by pair, the root first.
+    pub(super) fn into_nodes(self) -> Vec<Node> {
+        if let Self::Piece(nodes) = self {
+            return nodes;
+        }
+        let mut nodes = vec![Node::leaf(Aabb::EMPTY, 0, 1); self.len()];
+        let (root, descendants) = nodes.split_at_mut(1);
+        self.copy_to(&mut root[0], descendants, 1);
+        nodes
+    }
+
     /// How many nodes it has.
     fn len(&self) -> usize {
         match self {

@@ -3,12 +3,16 @@
 
 mod builder;
 pub(crate) mod driver;
+mod hlbvh;
+mod lbvh;
 mod median;
 mod midpoint;
+mod morton;
 mod options;
 mod packed_aabb;
 mod preset;
 mod primitive;
+mod radix_sort;
 mod reinsertion;
 mod sah_binned;
 mod sah_small;

@@ -1,6 +1,6 @@
 //! What a caller can choose about a build.
 
-use super::PackedAabb;
+use super::{Builder, PackedAabb};
 
 /// How to build a tree. The defaults are good; start from them:
 ///
@@ -19,6 +19,8 @@ pub struct BuildOptions {
     /// The most primitives a leaf of the binary tree may hold from which the wide tree is made, at least 1. The wide tree puts leaves together again, up to
     /// eight primitives; from smaller ones reinsertion makes slightly better trees, and takes longer.
     pub wide_leaf_size: usize,
+    /// Who builds the binary tree from which the wide tree is made.
+    pub wide_builder: Builder,
     /// The estimated cost of visiting a node (`C_aabb`).
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
@@ -58,6 +60,7 @@ impl Default for BuildOptions {
             bins: 16,
             max_leaf_size: 8,
             wide_leaf_size: 4,
+            wide_builder: Builder::SahBinned,
             node_cost: 1.0,
             primitive_cost: 1.0,
             reinsertion_passes: None,
@@ -81,6 +84,7 @@ impl BuildOptions {
             bins: self.bins.clamp(2, super::sah_binned::MAX_BINS),
             max_leaf_size: self.max_leaf_size.max(1),
             wide_leaf_size: self.wide_leaf_size.clamp(1, crate::geometry::LANES),
+            wide_builder: self.wide_builder,
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
             reinsertion_passes: self.reinsertion_passes,

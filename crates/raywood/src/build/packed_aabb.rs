@@ -69,6 +69,12 @@ impl PackedAabb {
         self.min
     }
 
+    /// The largest coordinates.
+    #[inline(always)]
+    pub(crate) fn max(&self) -> [f32; 4] {
+        self.max
+    }
+
     /// The lengths of the edges; may overflow to infinity.
     #[inline(always)]
     pub(crate) fn extent(&self) -> [f32; 4] {

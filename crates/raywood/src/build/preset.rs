@@ -1,15 +1,15 @@
 //! Builds by name, from the fastest to the one with the best tree.
 
-use super::BuildOptions;
+use super::{BuildOptions, Builder};
 
 /// A point of the trade between the time to build a bounding volume hierarchy and the time to trace through it. What each chooses stands in
 /// [`options`](Self::options); grids, octree and kD-tree are the same by all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum BuildPreset {
-    /// Few bins, leaves of up to eight, nothing improved: for scenes that change with every picture.
+    /// The wide tree along a space-filling curve: for scenes that change with every picture.
     Fastest,
-    /// As many bins as usual, nothing improved.
+    /// Leaves along a space-filling curve, the heuristic above them.
     Fast,
     /// The default: the largest nodes improved in a few passes.
     #[default]
@@ -42,20 +42,27 @@ impl BuildPreset {
 
     /// What it chooses. `balanced` is [`BuildOptions::default`]; each of the others differs from it as told here, and all else may be changed:
     ///
-    /// | preset | `bins` | `wide_leaf_size` | `reinsertion_passes` | `reinsertion_share` |
-    /// | --- | ---: | ---: | --- | ---: |
-    /// | `fastest` | 8 | 8 | none | |
-    /// | `fast` | 16 | 4 | none | |
-    /// | `balanced` | 16 | 4 | four for the wide tree, none for binary trees | 0.05 |
-    /// | `high` | 32 | 4 | up to 10 | 0.2 |
-    /// | `best` | 32 | 1 | up to 20 | 1.0 |
+    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` |
+    /// | --- | --- | ---: | ---: | --- | ---: |
+    /// | `fastest` | `Lbvh` | 8 | | none | |
+    /// | `fast` | `Hlbvh` | 4 | 16 | none | |
+    /// | `balanced` | `SahBinned` | 4 | 16 | four for the wide tree, none for binary trees | 0.05 |
+    /// | `high` | `SahBinned` | 4 | 32 | up to 10 | 0.2 |
+    /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 |
     pub fn options(self) -> BuildOptions {
         let balanced = BuildOptions::default();
         match self {
-            Self::Fastest => {
-                BuildOptions { bins: 8, wide_leaf_size: 8, reinsertion_passes: Some(0), ..balanced }
-            }
-            Self::Fast => BuildOptions { reinsertion_passes: Some(0), ..balanced },
+            Self::Fastest => BuildOptions {
+                wide_builder: Builder::Lbvh,
+                wide_leaf_size: 8,
+                reinsertion_passes: Some(0),
+                ..balanced
+            },
+            Self::Fast => BuildOptions {
+                wide_builder: Builder::Hlbvh,
+                reinsertion_passes: Some(0),
+                ..balanced
+            },
             Self::Balanced => balanced,
             Self::High => BuildOptions {
                 bins: 32,

@@ -139,22 +139,27 @@ pub trait Geometry: Sync {
 }
 
 impl<G: Geometry + ?Sized> Geometry for &G {
+    #[inline(always)]
     fn len(&self) -> usize {
         (**self).len()
     }
 
+    #[inline(always)]
     fn bounds(&self, primitive: u32) -> Aabb {
         (**self).bounds(primitive)
     }
 
+    #[inline(always)]
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
         (**self).clipped_bounds(primitive, cell)
     }
 
+    #[inline(always)]
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         (**self).triangle(primitive)
     }
 
+    #[inline(always)]
     fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
         (**self).overlaps(primitive, cell)
     }

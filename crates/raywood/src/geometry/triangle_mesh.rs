@@ -115,7 +115,7 @@ impl TriangleMesh {
     /// # Panics
     ///
     /// If there is no such triangle.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
         // Not `map`, which the compiler does not always inline.
         let [a, b, c] = self.triangles[triangle as usize];
@@ -135,15 +135,17 @@ impl Geometry for TriangleMesh {
         self.triangles.len()
     }
 
-    #[inline]
+    #[inline(always)]
     fn bounds(&self, primitive: u32) -> Aabb {
-        Aabb::of_points(self.corners(primitive))
+        let [a, b, c] = self.corners(primitive);
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
         clipped_triangle_bounds(self.corners(primitive), cell)
     }
 
+    #[inline(always)]
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         Some(self.corners(primitive))
     }

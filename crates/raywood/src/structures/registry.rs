@@ -162,6 +162,10 @@ structures! {
         |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
     BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, splits between bins tried by the surface area heuristic.",
         |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
+    BvhLbvh, Bvh2, "bvh-lbvh", "Binary BVH, split where a space-filling curve through the primitives turns.",
+        |geometry, options| Bvh2::build_by(Builder::Lbvh, geometry, options);
+    BvhHlbvh, Bvh2, "bvh-hlbvh", "Binary BVH, leaves from a space-filling curve, the rest as bvh-sah-binned.",
+        |geometry, options| Bvh2::build_by(Builder::Hlbvh, geometry, options);
     BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions: the default.", WideBvh::build;
     Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
     KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build;

@@ -23,7 +23,7 @@ pub(super) fn build<G: Geometry>(
         reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
         ..options.clone()
     };
-    let tree = Bvh2::build(geometry, &options)?;
+    let tree = Bvh2::build_by(options.wide_builder, geometry, &options)?;
     let plan = Plan::new(&tree);
     let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
     let lines = match tree.nodes() {

@@ -1,0 +1,141 @@
+//! The linear BVH: primitives sorted along a space-filling curve, sets split where the curve turns. Lauterbach et al., "Fast BVH Construction on GPUs", Eurographics 2009;
+//! Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012. Where codes cannot tell primitives apart, they get codes of their own.
+
+use super::PackedAabb;
+use super::driver::{self, PARALLEL_SUBTREES, Subtree, must_halve};
+use super::morton::{Morton, NUMBER_BITS, number, same_code};
+use super::radix_sort::sort_above;
+use crate::structures::{Bvh2, Node};
+use crate::{BuildError, BuildOptions, Geometry, parallel};
+
+/// Builds the tree. The same for any number of threads. O(N) but where many primitives lie close together, or in one place.
+pub(super) fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Bvh2, BuildError> {
+    build_with_leaves(geometry, options.clamped().max_leaf_size)
+}
+
+/// The same, with leaves of at most so many primitives.
+pub(super) fn build_with_leaves<G: Geometry>(
+    geometry: &G,
+    max_leaf_size: usize,
+) -> Result<Bvh2, BuildError> {
+    let around = driver::around_all(geometry)?;
+    let n = geometry.len();
+    if n == 0 {
+        return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
+    }
+    let morton = Morton::new(&around.centers);
+    let key = |primitive: usize| key(geometry, &morton, primitive as u32);
+    let mut keys = parallel::map(n, key);
+    sort_above(NUMBER_BITS, &mut keys, &mut vec![0; n]);
+
+    let builder = Lbvh { geometry, max_leaf_size };
+    let set = Set { keys: &mut keys, first: 0, depth: 1, alike: false };
+    let nodes = builder.grow(set).into_nodes();
+    let indices = parallel::map(n, |place| number(keys[place]));
+    Ok(Bvh2::from_parts(nodes, indices))
+}
+
+/// The code of a primitive's centre, and its number.
+#[inline(always)]
+fn key<G: Geometry>(geometry: &G, morton: &Morton, primitive: u32) -> u64 {
+    morton.key(PackedAabb::from(geometry.bounds(primitive)).center(), primitive)
+}
+
+/// A tree that is being built.
+struct Lbvh<'a, G> {
+    geometry: &'a G,
+    max_leaf_size: usize,
+}
+
+/// Some primitives side by side on the curve.
+struct Set<'a> {
+    /// Their codes and numbers, in ascending order.
+    keys: &'a mut [u64],
+    /// Where they start in the array of all.
+    first: usize,
+    /// The level of their node, from 1.
+    depth: usize,
+    /// Whether no code can tell them apart: their centres are in one place.
+    alike: bool,
+}
+
+impl<G: Geometry> Lbvh<'_, G> {
+    /// Builds a subtree, in parallel if it is large.
+    fn grow(&self, mut set: Set<'_>) -> Subtree {
+        let count = set.keys.len();
+        if count <= PARALLEL_SUBTREES || count <= self.max_leaf_size {
+            let mut nodes = Vec::with_capacity(count);
+            nodes.push(Node::leaf(PackedAabb::EMPTY.into(), 0, 0));
+            self.subdivide(set, 0, &mut nodes);
+            return Subtree::Piece(nodes);
+        }
+        let (left, right) = set.split(self);
+        let children = parallel::join_if(true, || self.grow(left), || self.grow(right));
+        let bounds = children.0.bounds().union(children.1.bounds());
+        Subtree::Pair(bounds, Box::new(children.into()))
+    }
+
+    /// Puts a subtree into the place of a node and behind the last one, pair by pair. Returns the box around it.
+    fn subdivide(&self, mut set: Set<'_>, place: usize, nodes: &mut Vec<Node>) -> PackedAabb {
+        let (first, count) = (set.first as u32, set.keys.len());
+        if count <= self.max_leaf_size {
+            let mut bounds = PackedAabb::EMPTY;
+            for &key in &*set.keys {
+                bounds.grow(&self.geometry.bounds(number(key)).into());
+            }
+            nodes[place] = Node::leaf(bounds.into(), first, count as u32);
+            return bounds;
+        }
+        let (left, right) = set.split(self);
+        let child = nodes.len();
+        let pair = [Node::leaf(PackedAabb::EMPTY.into(), 0, 0); 2];
+        nodes.extend_from_slice(&pair);
+        let left = self.subdivide(left, child, nodes);
+        let right = self.subdivide(right, child + 1, nodes);
+        let bounds = left.union(right);
+        nodes[place] = Node::interior(bounds.into(), child as u32);
+        bounds
+    }
+
+    /// Gives primitives whose codes are the same new ones, which tell them apart, and sorts them. Says whether that can be done.
+    fn encode_anew(&self, keys: &mut [u64]) -> bool {
+        let around = |centers: &mut PackedAabb, key: &u64| {
+            let bounds = PackedAabb::from(self.geometry.bounds(number(*key)));
+            *centers = centers.including(bounds.center());
+        };
+        let centers = parallel::fold(keys, PackedAabb::EMPTY, around, PackedAabb::grow);
+        let morton = Morton::new(&centers);
+        let mut sorted =
+            parallel::map(keys.len(), |place| key(self.geometry, &morton, number(keys[place])));
+        sort_above(NUMBER_BITS, &mut sorted, keys);
+        keys.copy_from_slice(&sorted);
+        !same_code(keys[0], keys[keys.len() - 1])
+    }
+}
+
+impl<'a> Set<'a> {
+    /// Divides the set where the highest bit changes in which codes differ; in the middle where the tree might else become too deep, or where no code can tell the
+    /// primitives apart.
+    fn split<G: Geometry>(&mut self, builder: &Lbvh<'_, G>) -> (Set<'a>, Set<'a>) {
+        let keys = std::mem::take(&mut self.keys);
+        let count = keys.len();
+        let halve = self.alike || must_halve(count, self.depth);
+        if !halve && same_code(keys[0], keys[count - 1]) {
+            self.alike = !builder.encode_anew(keys);
+        }
+        let left_count = match halve || self.alike {
+            true => count / 2,
+            false => {
+                let differing = keys[0] ^ keys[count - 1];
+                let prefix = keys[count - 1] & !(u64::MAX >> 1 >> differing.leading_zeros());
+                keys.partition_point(|key| *key < prefix)
+            }
+        };
+        let (left, right) = keys.split_at_mut(left_count);
+        let (depth, alike) = (self.depth + 1, self.alike);
+        (
+            Set { keys: left, first: self.first, depth, alike },
+            Set { keys: right, first: self.first + left_count, depth, alike },
+        )
+    }
+}
