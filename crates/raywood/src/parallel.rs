@@ -67,17 +67,6 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// Copies a slice to another of the same length.
-pub(crate) fn copy<T: Copy + Send + Sync>(from: &[T], to: &mut [T]) {
-    debug_assert_eq!(from.len(), to.len());
-    #[cfg(feature = "rayon")]
-    to.par_chunks_mut(GRAIN)
-        .zip(from.par_chunks(GRAIN))
-        .for_each(|(to, from)| to.copy_from_slice(from));
-    #[cfg(not(feature = "rayon"))]
-    to.copy_from_slice(from);
-}
-
 /// Folds a slice in pieces and merges these into one; `step` and `merge` must not care about order.
 pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     items: &[T],

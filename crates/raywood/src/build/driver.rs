@@ -46,12 +46,14 @@ impl Around {
     pub(super) const NOTHING: Self = Self { bounds: PackedAabb::EMPTY, centers: PackedAabb::EMPTY };
 
     /// Makes it what is around another primitive too.
+    #[inline(always)]
     pub(super) fn include(&mut self, primitive: &Primitive) {
         self.bounds.grow(primitive.bounds());
         self.centers = self.centers.including(primitive.center());
     }
 
     /// Makes it what is around both.
+    #[inline(always)]
     pub(super) fn grow(&mut self, other: &Self) {
         self.bounds.grow(&other.bounds);
         self.centers.grow(&other.centers);

@@ -6,7 +6,7 @@ use super::driver::{self, PARALLEL_SUBTREES, Subtree, must_halve};
 use super::morton::{Morton, NUMBER_BITS, number, same_code};
 use super::radix_sort::sort_above;
 use crate::structures::{Bvh2, Node};
-use crate::{BuildError, BuildOptions, Geometry, parallel};
+use crate::{Aabb, BuildError, BuildOptions, Geometry, parallel};
 
 /// Builds the tree. The same for any number of threads. O(N) but where many primitives lie close together, or in one place.
 pub(super) fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Bvh2, BuildError> {
@@ -26,7 +26,7 @@ pub(super) fn build_with_leaves<G: Geometry>(
     let morton = Morton::new(&around.centers);
     let key = |primitive: usize| key(geometry, &morton, primitive as u32);
     let mut keys = parallel::map(n, key);
-    sort_above(NUMBER_BITS, &mut keys, &mut vec![0; n]);
+    sort_above(NUMBER_BITS, &mut keys);
 
     let builder = Lbvh { geometry, max_leaf_size };
     let set = Set { keys: &mut keys, first: 0, depth: 1, alike: false };
@@ -40,6 +40,9 @@ pub(super) fn build_with_leaves<G: Geometry>(
 fn key<G: Geometry>(geometry: &G, morton: &Morton, primitive: u32) -> u64 {
     morton.key(PackedAabb::from(geometry.bounds(primitive)).center(), primitive)
 }
+
+/// A node that is still to be made.
+const UNKNOWN: Node = Node::leaf(Aabb::EMPTY, 0, 0);
 
 /// A tree that is being built.
 struct Lbvh<'a, G> {
@@ -64,9 +67,12 @@ impl<G: Geometry> Lbvh<'_, G> {
     fn grow(&self, mut set: Set<'_>) -> Subtree {
         let count = set.keys.len();
         if count <= PARALLEL_SUBTREES || count <= self.max_leaf_size {
+            let (first, keys) = (set.first, &mut *set.keys);
             let mut nodes = Vec::with_capacity(count);
-            nodes.push(Node::leaf(PackedAabb::EMPTY.into(), 0, 0));
-            self.subdivide(set, 0, &mut nodes);
+            nodes.push(UNKNOWN);
+            let below = Set { keys: &mut *keys, ..set };
+            self.subdivide(below, 0, &mut nodes);
+            self.measure(&mut nodes, keys, first);
             return Subtree::Piece(nodes);
         }
         let (left, right) = set.split(self);
@@ -75,26 +81,39 @@ impl<G: Geometry> Lbvh<'_, G> {
         Subtree::Pair(bounds, Box::new(children.into()))
     }
 
-    /// Puts a subtree into the place of a node and behind the last one, pair by pair. Returns the box around it.
-    fn subdivide(&self, mut set: Set<'_>, place: usize, nodes: &mut Vec<Node>) -> PackedAabb {
-        let (first, count) = (set.first as u32, set.keys.len());
+    /// Puts a subtree, still without boxes, into the place of a node and behind the last one, pair by pair.
+    fn subdivide(&self, mut set: Set<'_>, place: usize, nodes: &mut Vec<Node>) {
+        let count = set.keys.len();
         if count <= self.max_leaf_size {
-            let mut bounds = PackedAabb::EMPTY;
-            for &key in &*set.keys {
-                bounds.grow(&self.geometry.bounds(number(key)).into());
-            }
-            nodes[place] = Node::leaf(bounds.into(), first, count as u32);
-            return bounds;
+            nodes[place] = Node::leaf(Aabb::EMPTY, set.first as u32, count as u32);
+            return;
         }
         let (left, right) = set.split(self);
         let child = nodes.len();
-        let pair = [Node::leaf(PackedAabb::EMPTY.into(), 0, 0); 2];
-        nodes.extend_from_slice(&pair);
-        let left = self.subdivide(left, child, nodes);
-        let right = self.subdivide(right, child + 1, nodes);
-        let bounds = left.union(right);
-        nodes[place] = Node::interior(bounds.into(), child as u32);
-        bounds
+        nodes[place] = Node::interior(Aabb::EMPTY, child as u32);
+        nodes.extend_from_slice(&[UNKNOWN; 2]);
+        self.subdivide(left, child, nodes);
+        self.subdivide(right, child + 1, nodes);
+    }
+
+    /// Gives all nodes of a subtree their boxes, those of its primitives from `first` on.
+    fn measure(&self, nodes: &mut [Node], keys: &[u64], first: usize) {
+        // A loop of nothing but reading what lies all over the memory, so that the processor waits for many things at a time.
+        let primitive = |key: &u64| PackedAabb::from(self.geometry.bounds(number(*key)));
+        let primitives: Vec<_> = keys.iter().map(primitive).collect();
+        for place in (0..nodes.len()).rev() {
+            // Children come after their parents.
+            let node = nodes[place];
+            let (start, count) = (node.left_first() as usize, node.count() as usize);
+            nodes[place] = if node.is_leaf() {
+                let mut bounds = PackedAabb::EMPTY;
+                primitives[start - first..][..count].iter().for_each(|p| bounds.grow(p));
+                Node::leaf(bounds.into(), start as u32, count as u32)
+            } else {
+                let [left, right] = [nodes[start].bounds(), nodes[start + 1].bounds()];
+                Node::interior(left.union(right), start as u32)
+            };
+        }
     }
 
     /// Gives primitives whose codes are the same new ones, which tell them apart, and sorts them. Says whether that can be done.
@@ -107,7 +126,7 @@ impl<G: Geometry> Lbvh<'_, G> {
         let morton = Morton::new(&centers);
         let mut sorted =
             parallel::map(keys.len(), |place| key(self.geometry, &morton, number(keys[place])));
-        sort_above(NUMBER_BITS, &mut sorted, keys);
+        sort_above(NUMBER_BITS, &mut sorted);
         keys.copy_from_slice(&sorted);
         !same_code(keys[0], keys[keys.len() - 1])
     }

@@ -14,23 +14,17 @@ const FEW: usize = 2048;
 /// Pieces that threads count and move at a time hold at least as many numbers.
 const PIECE: usize = 1 << 16;
 
-/// Sorts `numbers`, which are in the order of their lowest `bits` bits already: only the bits above count. `spare` is room for as many numbers. O(n), in
-/// parallel.
-pub(super) fn sort_above(bits: u32, numbers: &mut [u64], spare: &mut [u64]) {
+/// Sorts `numbers`, which are in the order of their lowest `bits` bits already: only the bits above count. O(n), in parallel.
+pub(super) fn sort_above(bits: u32, numbers: &mut Vec<u64>) {
     if numbers.len() <= FEW {
         numbers.sort_unstable();
         return;
     }
-    let (mut from, mut to) = (numbers, spare);
-    let mut in_spare = false;
+    let mut moved = vec![0; numbers.len()];
     for shift in (bits..u64::BITS).step_by(DIGIT_BITS as usize) {
-        if move_by_digit(shift, from, to) {
-            (from, to) = (to, from);
-            in_spare = !in_spare;
+        if move_by_digit(shift, numbers, &mut moved) {
+            std::mem::swap(numbers, &mut moved);
         }
-    }
-    if in_spare {
-        parallel::copy(from, to);
     }
 }
 
@@ -96,8 +90,7 @@ mod tests {
                 .collect();
             let mut expected = numbers.clone();
             expected.sort();
-            let mut spare = vec![0; count];
-            sort_above(31, &mut numbers, &mut spare);
+            sort_above(31, &mut numbers);
             assert!(numbers == expected, "{count} numbers, mask {mask:x}");
         }
     }

@@ -52,6 +52,7 @@ impl BlockHits {
 
 impl TriangleBlock {
     /// Puts a triangle into a lane.
+    #[inline(always)]
     pub(crate) fn set(&mut self, lane: usize, primitive: u32, corners: [Vec3; 3]) {
         self.primitives[lane] = primitive;
         for (corner, point) in self.corners.iter_mut().zip(corners) {

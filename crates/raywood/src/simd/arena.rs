@@ -1,6 +1,8 @@
 //! Things of whole cache lines side by side in one piece of memory, found by the number of their first line: so that where a thing lies follows
 //! from a number alone, whatever kind of thing it is.
 
+use std::mem::MaybeUninit;
+
 /// Plain numbers that fill whole cache lines.
 ///
 /// # Safety
@@ -29,14 +31,16 @@ impl Arena {
         self.0.len()
     }
 
-    /// So many lines of zeros.
-    pub(crate) fn new(lines: usize) -> Self {
-        Self(crate::parallel::map(lines, |_| Line([0; 16])))
-    }
-
-    /// All lines, to be filled.
-    pub(crate) fn all(&mut self) -> Part<'_> {
-        Part { lines: &mut self.0, first: 0 }
+    /// So many lines, which `fill` fills, and what that returns. Lines that it leaves alone are zeros. Memory is touched for the first time where it is filled,
+    /// by the thread that does so: a page fault costs more than filling a page.
+    pub(crate) fn filled<R>(lines: usize, fill: impl FnOnce(Part<'_>) -> R) -> (Self, R) {
+        let mut all = Vec::with_capacity(lines);
+        huge_pages::ask_for(all.spare_capacity_mut());
+        let result = fill(Part { lines: &mut all.spare_capacity_mut()[..lines], first: 0 });
+        // SAFETY: there is room for as many lines. Every line belonged to a part, and parts write all their lines, when asked to or when they are dropped; whoever
+        // fills arenas forgets none.
+        unsafe { all.set_len(lines) };
+        (Self(all), result)
     }
 
     /// The thing whose first line has this number.
@@ -72,14 +76,15 @@ impl Arena {
     }
 }
 
-/// Some of the lines of an arena, side by side, to be filled: so that threads can each fill their own.
+/// Some of the lines of an arena, side by side, to be filled: so that threads can each fill their own. What was not filled becomes zeros when it is dropped; so parts
+/// must not be forgotten.
 pub(crate) struct Part<'a> {
-    lines: &'a mut [Line],
+    lines: &'a mut [MaybeUninit<Line>],
     /// The number of the first of them.
     first: usize,
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
     /// The number of its first line.
     pub(crate) fn first(&self) -> usize {
         self.first
@@ -102,14 +107,53 @@ impl<'a> Part<'a> {
         part
     }
 
-    /// Puts a thing into its first lines.
+    /// Puts a thing into its first lines, which it has no more then.
     ///
     /// # Panics
     ///
     /// If there are not as many as the thing has.
+    #[inline(always)]
     pub(crate) fn put<T: Lines>(&mut self, thing: T) {
-        let lines = &mut self.lines[..size_of::<T>() / 64];
+        let mut part = self.take(size_of::<T>() / 64);
+        let lines = std::mem::take(&mut part.lines);
         // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
         unsafe { lines.as_mut_ptr().cast::<T>().write(thing) }
     }
+}
+
+impl Drop for Part<'_> {
+    fn drop(&mut self) {
+        for line in &mut *self.lines {
+            line.write(Line([0; 16]));
+        }
+    }
+}
+
+/// Pages of 2 MiB for large arenas: fewer faults while they are filled, fewer misses while they are traced.
+mod huge_pages {
+    use std::mem::MaybeUninit;
+
+    /// Asks the system to use huge pages for the memory, which may be in use or not, as far as it can.
+    #[cfg(target_os = "linux")]
+    pub(super) fn ask_for<T>(memory: &mut [MaybeUninit<T>]) {
+        use std::ffi::{c_int, c_void};
+
+        unsafe extern "C" {
+            fn madvise(start: *mut c_void, length: usize, advice: c_int) -> c_int;
+        }
+        const MADV_HUGEPAGE: c_int = 14;
+        const HUGE_PAGE: usize = 2 << 20;
+
+        let start = memory.as_mut_ptr().cast::<u8>();
+        let before = start.align_offset(HUGE_PAGE);
+        let length = size_of_val(memory).saturating_sub(before) & !(HUGE_PAGE - 1);
+        if length > 0 {
+            // SAFETY: the pages lie within the memory, and the advice changes nothing but how fast they are. Where the system knows no such pages it answers with an
+            // error, which nobody needs.
+            unsafe { madvise(start.wrapping_add(before).cast(), length, MADV_HUGEPAGE) };
+        }
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    pub(super) fn ask_for<T>(_: &mut [MaybeUninit<T>]) {}
 }

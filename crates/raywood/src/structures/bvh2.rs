@@ -36,7 +36,7 @@ const _: () = assert!(size_of::<Node>() == 32);
 impl Node {
     /// A leaf over `count` primitives from place `first` on.
     #[inline]
-    pub(crate) fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
+    pub(crate) const fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
         let corners = [
             Corner { point: bounds.min, number: first },
             Corner { point: bounds.max, number: count },

@@ -5,7 +5,7 @@ use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
 use super::node::{Reference, WIDTH, WideNode};
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, Part};
-use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, parallel};
+use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
 
 /// How often the binary tree is improved by reinsertion unless the options say it.
 const REINSERTION_PASSES: usize = 4;
@@ -34,13 +34,16 @@ pub(super) fn build<G: Geometry>(
     if lines > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
-    let mut arena = Arena::new(lines);
     let wide = Wide { geometry, tree: &tree, plan: &plan };
-    let (root, depth) = match tree.nodes() {
+    let (arena, (root, depth)) = Arena::filled(lines, |all| match tree.nodes() {
         [] => (Reference::NOTHING, 0),
-        _ if is_node => (Reference::node(0), wide.fill(0, arena.all())),
-        _ => (wide.leaf(0, arena.all()), 0),
-    };
+        _ if is_node => (Reference::node(0), wide.fill(0, all)),
+        _ => {
+            let primitives = wide.primitives(0);
+            let corners: Vec<_> = primitives.iter().map(|&p| geometry.triangle(p)).collect();
+            (leaf(primitives, &corners, all), 0)
+        }
+    });
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     let triangle_test = options.triangle_test;
@@ -56,6 +59,13 @@ pub(super) fn build<G: Geometry>(
     })
 }
 
+/// What the leaves of a node are made of, kept so that not every node needs memory of its own.
+#[derive(Default)]
+struct Scratch {
+    primitives: Vec<u32>,
+    corners: Vec<Option<[Vec3; 3]>>,
+}
+
 /// A wide tree that is being made.
 struct Wide<'a, G> {
     geometry: &'a G,
@@ -68,18 +78,36 @@ impl<G: Geometry> Wide<'_, G> {
     /// the first of them, and so on. Returns how many nodes lie on the longest way down.
     fn fill(&self, number: usize, mut all: Part<'_>) -> usize {
         let place = all.take(NODE_LINES);
-        self.fill_below(number, place, all)
+        self.fill_below(number, place, all, &mut Scratch::default())
     }
 
-    /// Fills the place of a node and that of everything below it.
-    fn fill_below(&self, number: usize, mut place: Part<'_>, mut below: Part<'_>) -> usize {
+    /// Fills the place of a node and that of everything below it. What is in `scratch` does not matter.
+    fn fill_below(
+        &self,
+        number: usize,
+        mut place: Part<'_>,
+        mut below: Part<'_>,
+        scratch: &mut Scratch,
+    ) -> usize {
+        let Scratch { primitives, corners } = scratch;
         let is_large = below.len() > PARALLEL_LINES;
         let children = self.plan.children(self.tree, number);
+        let leaves = children.numbers().filter(|&child| self.plan.is_leaf(child));
+        // All their corners before anything is made of them: they lie all over the memory, and the processor waits for many at a time.
+        primitives.clear();
+        leaves.for_each(|leaf| primitives.extend_from_slice(self.primitives(leaf)));
+        corners.clear();
+        corners.extend(primitives.iter().map(|&primitive| self.geometry.triangle(primitive)));
+
+        let mut unused = &corners[..];
         let mut node = WideNode::EMPTY;
         let mut nodes = [const { None }; WIDTH];
         for (lane, number) in children.numbers().enumerate() {
             let child = if self.plan.is_leaf(number) {
-                self.leaf(number, below.take(LEAF_LINES))
+                let primitives = self.primitives(number);
+                let (corners, others) = unused.split_at(primitives.len());
+                unused = others;
+                leaf(primitives, corners, below.take(LEAF_LINES))
             } else {
                 let place = below.take(NODE_LINES);
                 let child = Reference::node(place.first());
@@ -94,16 +122,23 @@ impl<G: Geometry> Wide<'_, G> {
             let below = below.take(self.plan.lines_below(number));
             (number, place, below)
         });
-        let fill = |(number, place, below)| self.fill_below(number, place, below);
         let deepest = match is_large {
-            true => parallel::map_tasks(tasks.collect(), fill).into_iter().max(),
-            false => tasks.map(fill).max(),
+            true => {
+                let fill = |(number, place, below)| {
+                    self.fill_below(number, place, below, &mut Scratch::default())
+                };
+                parallel::map_tasks(tasks.collect(), fill).into_iter().max()
+            }
+            false => {
+                let fill = |(number, place, below)| self.fill_below(number, place, below, scratch);
+                tasks.map(fill).max()
+            }
         };
         1 + deepest.unwrap_or(0)
     }
 
-    /// Fills the place of a leaf of all primitives below node `number` of the binary tree.
-    fn leaf(&self, number: usize, mut place: Part<'_>) -> Reference {
+    /// All primitives below node `number` of the binary tree.
+    fn primitives(&self, number: usize) -> &[u32] {
         // Their numbers lie side by side, from those of the leftmost leaf to those of the rightmost.
         let nodes = self.tree.nodes();
         let (mut first, mut last) = (&nodes[number], &nodes[number]);
@@ -114,16 +149,19 @@ impl<G: Geometry> Wide<'_, G> {
             last = self.tree.children(last)[1];
         }
         let range = first.left_first() as usize..(last.left_first() + last.count()) as usize;
-        let primitives = &self.tree.primitive_indices()[range];
-
-        let mut block = TriangleBlock::default();
-        let mut mixed = false;
-        for (lane, &primitive) in primitives.iter().enumerate() {
-            let triangle = self.geometry.triangle(primitive);
-            mixed |= triangle.is_none();
-            block.set(lane, primitive, triangle.unwrap_or_default());
-        }
-        place.put(block);
-        Reference::leaf(place.first(), primitives.len(), mixed)
+        &self.tree.primitive_indices()[range]
     }
+}
+
+/// Fills the place of a leaf of some primitives, which are triangles of these corners or none.
+fn leaf(primitives: &[u32], corners: &[Option<[Vec3; 3]>], mut place: Part<'_>) -> Reference {
+    let mut block = TriangleBlock::default();
+    let mut mixed = false;
+    for (lane, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
+        mixed |= triangle.is_none();
+        block.set(lane, primitive, triangle.unwrap_or_default());
+    }
+    let leaf = Reference::leaf(place.first(), primitives.len(), mixed);
+    place.put(block);
+    leaf
 }

@@ -152,18 +152,27 @@ impl Search<'_> {
         );
         let primitives = left.primitives.saturating_add(right.primitives);
 
-        // Divide so many trees among both children in the best way.
+        // Divide so many trees among both children in the best way. All numbers of trees to the right at once: what a child cannot be divided into costs infinitely
+        // much, and more than sixteen trees are not looked at.
         let most = (left.most + right.most).min(WIDTH);
-        for trees in 2..=most {
-            let fewest_left = trees.saturating_sub(right.most).max(1);
-            for to_left in fewest_left..=left.most.min(trees - 1) {
-                let cost = left.costs[to_left - 1] + right.costs[trees - to_left - 1];
-                if cost < costs[trees - 1] {
-                    costs[trees - 1] = cost;
-                    choice.trees[trees - 1] = to_left as u8;
-                }
+        let mut divided = [f32::INFINITY; 2 * WIDTH];
+        let mut to_left = [0; 2 * WIDTH];
+        for (less_one, left_cost) in left.costs[..left.most.min(WIDTH - 1)].iter().enumerate() {
+            let divided = &mut divided[less_one + 1..][..WIDTH];
+            let to_left = &mut to_left[less_one + 1..][..WIDTH];
+            for ((divided, to_left), right_cost) in
+                divided.iter_mut().zip(to_left).zip(&right.costs)
+            {
+                let cost = left_cost + right_cost;
+                let is_less = cost < *divided;
+                *divided = if is_less { cost } else { *divided };
+                *to_left = if is_less { less_one as u32 + 1 } else { *to_left };
             }
-            let to_left = usize::from(choice.trees[trees - 1]).max(1);
+        }
+        for trees in 2..=most {
+            let to_left = to_left[trees - 1] as usize;
+            (costs[trees - 1], choice.trees[trees - 1]) = (divided[trees - 1], to_left as u8);
+            let to_left = to_left.max(1);
             lines[trees - 1] =
                 left.lines[to_left - 1].saturating_add(right.lines[trees - to_left - 1]);
         }
