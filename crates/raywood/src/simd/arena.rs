@@ -157,3 +157,35 @@ mod huge_pages {
     #[cfg(not(target_os = "linux"))]
     pub(super) fn ask_for<T>(_: &mut [MaybeUninit<T>]) {}
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriangleBlock;
+
+    #[test]
+    fn what_is_not_filled_becomes_zeros() {
+        let mut block = TriangleBlock::default();
+        block.set(3, 7, [crate::Vec3::ONE; 3]);
+        // Of more than a huge page.
+        let lines = 5 * 10_000;
+        let (arena, first) = Arena::filled(lines, |mut all| {
+            drop(all.take(10));
+            let mut part = all.take(20);
+            part.put(block);
+            assert_eq!((part.first(), part.len()), (15, 15));
+            all.first()
+        });
+        assert_eq!((arena.len(), first), (lines, 30));
+        for line in (0..lines).step_by(5) {
+            let expected = if line == 10 { block } else { TriangleBlock::default() };
+            assert_eq!(*arena.get::<TriangleBlock>(line), expected, "line {line}");
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "mid > len")]
+    fn there_is_no_more_room_than_there_is() {
+        Arena::filled(4, |mut all| all.put(TriangleBlock::default()));
+    }
+}
