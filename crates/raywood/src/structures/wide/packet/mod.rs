@@ -18,12 +18,12 @@ use super::sink::{Sink, SixteenHits};
 use super::source::Source;
 use super::step;
 use crate::geometry::LANES;
-use crate::simd::{Float, Simd};
+use crate::simd::{Float, Simd, dispatch_on};
 use crate::traverse::nearest::hit as hit_one;
 use crate::{Geometry, Hit, HitColumns, PreparedRay};
 use frame::Frame;
 use groups::Groups;
-use leaving::Plane;
+use leaving::{Leaving, Plane};
 use triangles::{GREATEST_VOLUME, TRIANGLES, Triangles};
 
 /// How many rays a packet has at most.
@@ -87,6 +87,9 @@ const MOST_WORK: f32 = 128.0;
 
 /// What an edge function's error hardly ever exceeds, as a share of what it may be.
 const LIKELY_ERROR: f32 = 1.0 / 16.0;
+
+/// From so many rays of a group on they are asked together whether they leave a triangle's plane.
+const SEVERAL: u32 = 4;
 
 /// Stands for a primitive where none was hit.
 const NONE: u32 = HitColumns::NONE;
@@ -471,6 +474,16 @@ impl Packet {
         let is_triangle =
             !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
         let plane = (ANY && is_triangle).then(|| Plane::of(block.corners(lane)));
+        let mut doubtful = doubtful;
+        let plane = match plane {
+            Some(plane) if doubtful.count_ones() >= SEVERAL => {
+                let (packet, rays) = (&*self, &piece.rays);
+                let leaving = Leaving { packet, rays, group, some: doubtful, plane };
+                doubtful &= !dispatch_on(piece.tree.level, leaving);
+                None
+            }
+            few => few,
+        };
         for place in (0..GROUP).filter(|place| doubtful >> place & 1 == 1) {
             if self.nearest[group][place] == f32::INFINITY {
                 continue;
