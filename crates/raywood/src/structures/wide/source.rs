@@ -10,6 +10,9 @@ pub(super) trait Source: Copy {
     /// Whether all rays pass through a point that is known.
     const COMMON: Option<Common>;
 
+    /// That point.
+    fn point(&self) -> Option<Vec3>;
+
     /// How many rays.
     fn len(&self) -> usize;
 
@@ -42,6 +45,11 @@ fn part<T>(items: &[T], start: usize, count: usize) -> &[T] {
 
 impl Source for &[Ray] {
     const COMMON: Option<Common> = None;
+
+    #[inline(always)]
+    fn point(&self) -> Option<Vec3> {
+        None
+    }
 
     #[inline(always)]
     fn len(&self) -> usize {
@@ -104,6 +112,11 @@ impl Source for FromPoint<'_> {
     const COMMON: Option<Common> = Some(Common::Origin);
 
     #[inline(always)]
+    fn point(&self) -> Option<Vec3> {
+        Some(self.origin)
+    }
+
+    #[inline(always)]
     fn len(&self) -> usize {
         self.directions.len()
     }
@@ -142,6 +155,11 @@ pub(super) struct Towards<'a> {
 
 impl Source for Towards<'_> {
     const COMMON: Option<Common> = Some(Common::Target);
+
+    #[inline(always)]
+    fn point(&self) -> Option<Vec3> {
+        Some(self.target)
+    }
 
     #[inline(always)]
     fn len(&self) -> usize {

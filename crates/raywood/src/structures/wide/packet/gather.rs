@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::{GROUP, Groups, NONE, Packet, RAYS};
 use crate::simd::{Float, Simd};
-use crate::structures::wide::source::{self, Source};
+use crate::structures::wide::source::{Common, Source};
 use crate::{Ray, Vec3};
 
 /// Rays that rise more steeply against the packet's main axis do not come with it.
@@ -29,32 +29,87 @@ const NUMBERS: [[u8; GROUP]; GROUP] = {
     numbers
 };
 
-/// What rays may have in common.
-enum Common {
-    Origin(Vec3),
-    /// A point that they go to.
-    Target(Vec3),
+/// Where most rays of a packet meet, judged by two of them or, where these do not agree, by five: whatever one of these is, the others decide.
+struct Meeting {
+    kind: Common,
+    point: Vec3,
+    /// How far a ray may pass by the point, along each axis.
+    offset: f32,
+    /// The direction of one of the rays, seen from the point.
+    direction: Vec3,
 }
 
-impl Common {
-    /// What most rays have in common, judged by a few of them.
-    fn of<R: Source>(rays: &R, any: bool) -> Option<Self> {
-        let middle = rays.ray(rays.len() / 2);
-        match R::COMMON {
-            Some(source::Common::Origin) => return Some(Self::Origin(middle.origin)),
-            Some(source::Common::Target) => return Some(Self::Target(middle.at(1.0))),
-            None => {}
+/// Of five rays so many decide.
+const MOST: usize = 3;
+
+impl Meeting {
+    /// Where two of the rays say that all meet, if they agree.
+    #[inline(always)]
+    fn of_two<R: Source>(rays: &R, any: bool) -> Option<Self> {
+        let (one, other) = (rays.ray(rays.len() / 2), rays.ray(0));
+        let (kind, point) = match (R::COMMON, rays.point()) {
+            (Some(kind), Some(point)) => (kind, point),
+            _ if one.origin == other.origin => (Common::Origin, one.origin),
+            _ => (Common::Target, one.at(length(&one))),
+        };
+        let (turn, offset) = match kind {
+            Common::Origin => (1.0, 0.0),
+            Common::Target => (-1.0, allowance(point, one.origin.abs().max(other.origin.abs()))),
+        };
+        let meet = R::COMMON.is_some()
+            || kind == Common::Origin
+            || any && passed(&other, point) <= offset && point.is_finite();
+        let axis = one.direction.abs().max_axis();
+        let same_way = axis == other.direction.abs().max_axis()
+            && one.direction[axis] * other.direction[axis] > 0.0;
+        let agree = meet && same_way && offset < f32::INFINITY;
+        agree.then_some(Self { kind, point, offset, direction: turn * one.direction })
+    }
+
+    /// Where most of five rays meet.
+    #[cold]
+    #[inline(never)]
+    fn of_five<R: Source>(rays: &R, any: bool) -> Option<Self> {
+        let samples = [2, 0, 4, 1, 3].map(|part| rays.ray(part * (rays.len() - 1) / 4));
+        let (kind, point) = match (R::COMMON, rays.point()) {
+            (Some(kind), Some(point)) => (kind, point),
+            _ => Self::looked_for(&samples, any)?,
+        };
+        let (turn, offset) = match kind {
+            Common::Origin => (1.0, 0.0),
+            Common::Target => {
+                let origins = samples.iter().map(|ray| ray.origin).filter(|o| o.is_finite());
+                (-1.0, origins.map(|origin| allowance(point, origin)).fold(0.0, f32::max))
+            }
+        };
+
+        // The main axis of most of them, and which way along it.
+        let directions = samples.map(|ray| turn * ray.direction);
+        let way = |direction: &Vec3| {
+            let axis = direction.abs().max_axis();
+            direction.is_finite().then_some((axis, direction[axis] < 0.0))
+        };
+        let ways = directions.each_ref().map(way);
+        let votes = |place: &usize| ways.iter().filter(|way| **way == ways[*place]).count();
+        let best = (0..ways.len()).filter(|place| ways[*place].is_some()).max_by_key(votes)?;
+        Some(Self { kind, point, offset, direction: directions[best] })
+    }
+
+    /// A point that most of some rays start at or, if `any` hit is looked for, go to.
+    fn looked_for(samples: &[Ray; 5], any: bool) -> Option<(Common, Vec3)> {
+        let starting = |point: Vec3| samples.iter().filter(|ray| ray.origin == point).count();
+        let origins = samples.iter().map(|ray| ray.origin);
+        if let Some(point) = origins.into_iter().find(|point| starting(*point) >= MOST) {
+            return Some((Common::Origin, point));
         }
-        let samples = [0, 1, 2, 3, 4].map(|part| rays.ray(part * (rays.len() - 1) / 4));
-        let middle = samples[2];
-        if samples.iter().filter(|ray| ray.origin == middle.origin).count() >= 3 {
-            return Some(Self::Origin(middle.origin));
-        }
-        let point = middle.at(length(&middle));
-        let most = allowance(point, middle.origin);
-        let close = |ray: &&Ray| passed(ray, point) <= most;
-        (any && point.is_finite() && samples.iter().filter(close).count() >= 3)
-            .then_some(Self::Target(point))
+        let is_target = |ray: &&Ray| {
+            let point = ray.at(length(ray));
+            let most = allowance(point, ray.origin);
+            let close = |ray: &&Ray| passed(ray, point) <= most;
+            point.is_finite() && samples.iter().filter(close).count() >= MOST
+        };
+        let ray = samples.iter().filter(|_| any).find(is_target)?;
+        Some((Common::Target, ray.at(length(ray))))
     }
 }
 
@@ -85,23 +140,20 @@ impl Packet {
         rest: &mut Vec<usize>,
         first: usize,
     ) -> bool {
-        let common = if rays.len() < FEWEST as usize { None } else { Common::of(rays, ANY) };
-        let Some(common) = common else {
+        let meeting = (rays.len() >= FEWEST as usize)
+            .then(|| Meeting::of_two(rays, ANY).or_else(|| Meeting::of_five(rays, ANY)))
+            .flatten();
+        let Some(Meeting { kind, point, offset, direction }) = meeting else {
             rest.extend(first..first + rays.len());
             return false;
         };
-        let middle = rays.ray(rays.len() / 2);
+        // Known beforehand wherever it can be: the loop below is made for one kind then.
+        let kind = R::COMMON.unwrap_or(kind);
         // Rays with a common end are looked at from there.
-        let (point, turned) = match common {
-            Common::Origin(origin) => {
-                self.frame = Frame::new(origin, 0.0, middle.direction);
-                (origin, 1.0)
-            }
-            Common::Target(target) => {
-                let offset = allowance(target, middle.origin);
-                self.frame = Frame::new(target, offset, -middle.direction);
-                (target, -1.0)
-            }
+        self.frame = Frame::new(point, offset, direction);
+        let turned = match kind {
+            Common::Origin => 1.0,
+            Common::Target => -1.0,
         };
 
         let (zero, one, never) =
@@ -119,12 +171,12 @@ impl Packet {
             let d = [dx, dy, dz];
 
             // Which of them pass through the point, and where on their way.
-            let (passed, length, from_start) = match common {
-                Common::Origin(_) => {
+            let (passed, length, from_start) = match kind {
+                Common::Origin => {
                     let [x, y, z] = [ox - origin[0], oy - origin[1], oz - origin[2]];
                     ([x, y, z], end, zero)
                 }
-                Common::Target(_) => {
+                Common::Target => {
                     let nearly = simd.splat16(NEARLY_ONE).less_or_equal(end) & end.less(one);
                     let length = match R::COMMON {
                         Some(_) => one,
@@ -164,8 +216,8 @@ impl Packet {
             self.scales[group] = scale.to_array();
             // Divisions are slow, and here the length is known.
             let limit = match R::COMMON {
-                Some(source::Common::Origin) => zero,
-                Some(source::Common::Target) => scale,
+                Some(Common::Origin) => zero,
+                Some(Common::Target) => scale,
                 None => scale / length,
             };
             let limit = limit * simd.splat16(1.0 - 1.0 / (1 << 20) as f32);

@@ -10,6 +10,8 @@ mod gather;
 mod groups;
 mod leaving;
 mod sort;
+#[cfg(test)]
+mod tests;
 mod triangles;
 
 use super::WideBvh;

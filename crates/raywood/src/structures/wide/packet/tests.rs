@@ -1,0 +1,79 @@
+//! What one unusual ray does to the packet that it comes with: nothing but that it is traced on its own.
+
+use super::{GROUP, Packet, RAYS};
+use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
+use crate::{Ray, Vec3};
+
+/// Makes a packet of rays. Which of them must be traced otherwise, which groups have rays, and the slopes between which these lie.
+struct Gather<'a> {
+    rays: &'a [Ray],
+    any: bool,
+}
+
+impl Kernel for Gather<'_> {
+    type Output = (Vec<usize>, u32, [[f32; 2]; 2]);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let (mut packet, mut rest) = (Packet::empty(), Vec::new());
+        if self.any {
+            packet.gather::<S, &[Ray], true>(simd, &self.rays, &mut rest, 0);
+        } else {
+            packet.gather::<S, &[Ray], false>(simd, &self.rays, &mut rest, 0);
+        }
+        (rest, packet.groups.live, packet.groups.whole)
+    }
+}
+
+/// Sixteen times sixteen rays from a point.
+fn camera_rays() -> Vec<Ray> {
+    let direction = |number: usize| {
+        let (x, y) = ((number % GROUP) as f32 / 64.0, (number / GROUP) as f32 / 64.0);
+        Vec3::new(x - 0.1, y - 0.1, 1.0)
+    };
+    (0..RAYS).map(|number| Ray::new([1.0, 2.0, 3.0], direction(number))).collect()
+}
+
+/// The same from their other ends to the point.
+fn shadow_rays() -> Vec<Ray> {
+    camera_rays().iter().map(|ray| Ray::between(ray.at(5.0), ray.origin)).collect()
+}
+
+#[test]
+fn an_unusual_ray_leaves_the_others_in_their_packet() {
+    let levels = SimdLevel::ALL.iter().copied().filter(|level| level.is_available());
+    for level in levels {
+        for (any, usual) in [(false, camera_rays()), (true, camera_rays()), (true, shadow_rays())] {
+            let gather = |rays: &[Ray]| dispatch_on(level, Gather { rays, any });
+            let (rest, live, whole) = gather(&usual);
+            assert!(rest.is_empty() && live == 0xffff, "{}: {rest:?}", level.name());
+
+            for (place, ray) in usual.iter().enumerate().step_by(32) {
+                let unusual = [
+                    Ray { direction: Vec3::ZERO, ..*ray },
+                    Ray { direction: Vec3::splat(f32::NAN), ..*ray },
+                    Ray { direction: Vec3::new(f32::INFINITY, 0.0, 0.0), ..*ray },
+                    Ray { direction: -ray.direction, ..*ray },
+                    Ray { direction: Vec3::X, ..*ray },
+                    Ray { origin: Vec3::splat(f32::NAN), ..*ray },
+                    Ray { origin: ray.origin + Vec3::X, ..*ray },
+                    ray.with_interval(f32::NAN, ray.t_max),
+                    ray.with_interval(0.0, f32::NAN),
+                    ray.with_interval(0.25, ray.t_max),
+                    ray.with_interval(0.0, -1.0),
+                ];
+                for odd in unusual {
+                    let mut rays = usual.clone();
+                    rays[place] = odd;
+                    let (rest, live, new_whole) = gather(&rays);
+                    assert_eq!(rest, [place], "{}: {odd:?}", level.name());
+                    assert_eq!(live, 0xffff);
+                    for axis in 0..2 {
+                        let ([low, high], [least, most]) = (new_whole[axis], whole[axis]);
+                        assert!(least <= low && high <= most, "{odd:?} makes the packet wider");
+                    }
+                }
+            }
+        }
+    }
+}
