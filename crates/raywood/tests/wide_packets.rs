@@ -1,4 +1,4 @@
-//! Rays that share their origin or go to one point: packets of every size and shape answer as single rays do.
+//! Rays that share their origin, go to one point or run in one direction: packets of every size and shape answer as single rays do.
 
 use raywood::{
     BuildOptions, Geometry, Hit, HitColumns, Ray, SimdLevel, Spheres, Structure, StructureKind,
@@ -109,6 +109,8 @@ fn packets_of_every_size_agree_with_single_rays() {
         let rays = pinhole(Vec3::new(1.9, 0.7, -2.1), Vec3::ZERO, 0.9, size);
         check(&mut structure, &rays, "pinhole");
         check(&mut structure, &returning(&rays, &mut rng), "returning");
+        let direction = Vec3::new(0.3, -1.0, 0.4);
+        check(&mut structure, &parallel(&mut rng, Vec3::ZERO, 1.5, direction, size), "parallel");
         let point = rays[0].origin;
         let directions: Vec<_> = rays.iter().map(|ray| ray.direction).collect();
         check_point(&mut structure, point, &directions, "directions");
@@ -175,6 +177,50 @@ fn packets_over_nasty_meshes_agree_with_single_rays_and_with_the_oracle() {
                             .unwrap_or_else(|error| panic!("{}: {error}", nasty.name));
                     }
                 }
+            }
+        }
+    }
+}
+
+/// Parallel rays from points of a box around another point.
+fn parallel(rng: &mut Rng, center: Vec3, size: f32, direction: Vec3, count: usize) -> Vec<Ray> {
+    (0..count).map(|_| Ray::new(center + size * rng.in_cube(), direction)).collect()
+}
+
+#[test]
+fn parallel_rays_over_nasty_meshes_agree_with_single_rays() {
+    let mut rng = Rng::new(21);
+    for nasty in nasty::all() {
+        let bounds = nasty.mesh.bounds_of_all();
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        let size = half.max_element().max(1e-30);
+        let is_empty = nasty.mesh.len() == 0;
+        let along = (!is_empty).then(|| nasty.mesh.triangle(0)).flatten();
+        let along = along.map_or(Vec3::X, |[a, b, _]| b - a);
+        let mut structure = build(&nasty.mesh);
+        let (grazing, slanted) = (rng.direction(), rng.direction());
+        for direction in [
+            Vec3::X,
+            -Vec3::Y,
+            3.0 * Vec3::Z,
+            Vec3::new(1.0, 0.0, -1.0),
+            Vec3::new(1e-20, -1.0, 1e-7),
+            along,
+            grazing,
+            slanted,
+        ] {
+            for spread in [0.01, 0.3, 2.0] {
+                let around = center + size * rng.in_cube();
+                let mut rays = parallel(&mut rng, around, spread * size, direction, 290);
+                // Some of them start on the mesh itself, where rounding decides.
+                for number in (0..rays.len()).step_by(3).filter(|_| !is_empty) {
+                    let corners = nasty.mesh.triangle(rng.below(nasty.mesh.len()) as u32);
+                    if let Some([a, b, c]) = corners {
+                        let (u, v) = (rng.range(0.0, 0.5), rng.range(0.0, 0.5));
+                        rays[number].origin = a + u * (b - a) + v * (c - a);
+                    }
+                }
+                check(&mut structure, &rays, nasty.name);
             }
         }
     }
@@ -346,5 +392,9 @@ fn shadow_rays_that_start_on_or_just_beside_surfaces_answer_as_single_rays_do() 
         check_point(&mut structure, light, &points, "from surfaces");
         let rays: Vec<_> = points.iter().map(|point| Ray::between(*point, light)).collect();
         check(&mut structure, &rays, "from surfaces");
+        for direction in [light - center, Vec3::Y, -Vec3::X] {
+            let rays: Vec<_> = points.iter().map(|point| Ray::new(*point, direction)).collect();
+            check(&mut structure, &rays, "from surfaces, parallel");
+        }
     }
 }

@@ -34,6 +34,8 @@ pub(super) trait Source: Copy {
 pub(super) enum Common {
     Origin,
     Target,
+    /// The point is where one of them starts.
+    Direction,
 }
 
 /// The part of a slice from `start` on, of at most `count` items.

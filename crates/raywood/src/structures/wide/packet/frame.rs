@@ -15,8 +15,12 @@ pub(super) struct Frame {
     pub(super) sign: f32,
     /// The common point, by the axes' order.
     pub(super) origin: [f32; 3],
-    /// How far any ray passes by that point at most, along each axis.
+    /// How far any ray passes by that point at most, along each axis; of parallel rays how far any is off by rounding.
     pub(super) offset: f32,
+    /// Of parallel rays: how much their other two coordinates grow per depth.
+    pub(super) shear: [f32; 2],
+    /// And the largest coordinate that any starts at.
+    pub(super) farthest: f32,
 }
 
 impl Frame {
@@ -25,7 +29,14 @@ impl Frame {
         let z = direction.abs().max_axis();
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let sign = if direction[z] < 0.0 { -1.0 } else { 1.0 };
-        Self { axes, sign, origin: axes.map(|axis| origin[axis]), offset }
+        Self {
+            axes,
+            sign,
+            origin: axes.map(|axis| origin[axis]),
+            offset,
+            shear: [0.0; 2],
+            farthest: 0.0,
+        }
     }
 
     /// The smallest and largest coordinates of sixteen boxes, given as planes by axis and side, seen in this frame; a little larger by what the rays miss the

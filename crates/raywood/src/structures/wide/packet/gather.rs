@@ -19,7 +19,7 @@ const ROUNDINGS: f32 = 4.0 * f32::EPSILON;
 const NEARLY_ONE: f32 = 0.99;
 
 /// Rays in the order in which they come.
-const NUMBERS: [[u8; GROUP]; GROUP] = {
+pub(super) const NUMBERS: [[u8; GROUP]; GROUP] = {
     let mut numbers = [[0; GROUP]; GROUP];
     let mut number = 0;
     while number < RAYS {
@@ -50,14 +50,16 @@ impl Meeting {
         let (kind, point) = match (R::COMMON, rays.point()) {
             (Some(kind), Some(point)) => (kind, point),
             _ if one.origin == other.origin => (Common::Origin, one.origin),
+            _ if any && is_parallel(&one, &other) => (Common::Direction, one.origin),
             _ => (Common::Target, one.at(length(&one))),
         };
         let (turn, offset) = match kind {
-            Common::Origin => (1.0, 0.0),
+            Common::Origin | Common::Direction => (1.0, 0.0),
             Common::Target => (-1.0, allowance(point, one.origin.abs().max(other.origin.abs()))),
         };
         let meet = R::COMMON.is_some()
             || kind == Common::Origin
+            || kind == Common::Direction && point.is_finite()
             || any && passed(&other, point) <= offset && point.is_finite();
         let axis = one.direction.abs().max_axis();
         let same_way = axis == other.direction.abs().max_axis()
@@ -76,31 +78,42 @@ impl Meeting {
             _ => Self::looked_for(&samples, any)?,
         };
         let (turn, offset) = match kind {
-            Common::Origin => (1.0, 0.0),
+            Common::Origin | Common::Direction => (1.0, 0.0),
             Common::Target => {
                 let origins = samples.iter().map(|ray| ray.origin).filter(|o| o.is_finite());
                 (-1.0, origins.map(|origin| allowance(point, origin)).fold(0.0, f32::max))
             }
         };
 
-        // The main axis of most of them, and which way along it.
+        // The main axis of most of them, and which way along it; of parallel rays the direction that most of them have.
         let directions = samples.map(|ray| turn * ray.direction);
         let way = |direction: &Vec3| {
             let axis = direction.abs().max_axis();
             direction.is_finite().then_some((axis, direction[axis] < 0.0))
         };
         let ways = directions.each_ref().map(way);
-        let votes = |place: &usize| ways.iter().filter(|way| **way == ways[*place]).count();
+        let alike = |one: usize, other: usize| match kind {
+            Common::Direction => directions[one] == directions[other],
+            _ => ways[one] == ways[other],
+        };
+        let votes = |place: &usize| (0..ways.len()).filter(|other| alike(*place, *other)).count();
         let best = (0..ways.len()).filter(|place| ways[*place].is_some()).max_by_key(votes)?;
         Some(Self { kind, point, offset, direction: directions[best] })
     }
 
-    /// A point that most of some rays start at or, if `any` hit is looked for, go to.
+    /// A point that most of some rays start at or, if `any` hit is looked for, go to; or where one of them starts if most have its direction.
     fn looked_for(samples: &[Ray; 5], any: bool) -> Option<(Common, Vec3)> {
         let starting = |point: Vec3| samples.iter().filter(|ray| ray.origin == point).count();
         let origins = samples.iter().map(|ray| ray.origin);
         if let Some(point) = origins.into_iter().find(|point| starting(*point) >= MOST) {
             return Some((Common::Origin, point));
+        }
+        let is_common = |ray: &&Ray| {
+            let parallel = samples.iter().filter(|other| is_parallel(ray, other));
+            ray.origin.is_finite() && parallel.count() >= MOST
+        };
+        if let Some(ray) = samples.iter().filter(|_| any).find(is_common) {
+            return Some((Common::Direction, ray.origin));
         }
         let is_target = |ray: &&Ray| {
             let point = ray.at(length(ray));
@@ -111,6 +124,11 @@ impl Meeting {
         let ray = samples.iter().filter(|_| any).find(is_target)?;
         Some((Common::Target, ray.at(length(ray))))
     }
+}
+
+/// Whether two rays have the same direction and no end.
+fn is_parallel(one: &Ray, other: &Ray) -> bool {
+    one.direction == other.direction && one.t_max == f32::INFINITY && other.t_max == f32::INFINITY
 }
 
 /// At which distance a ray is at the point that it goes to: where it ends, or where a ray [between](Ray::between) points would end that
@@ -131,28 +149,32 @@ fn allowance(point: Vec3, origin: Vec3) -> f32 {
 
 impl Packet {
     /// Makes the packet of at most 256 rays. Numbers of rays that do not fit in are appended to `rest`, counted from `first`; if none are left
-    /// there is no packet, and the answer is `false`.
+    /// there is no packet. Otherwise the answer is what its rays have in common. `reach` is that of the tree, which parallel rays need to know.
     #[inline(always)]
     pub(super) fn gather<S: Simd, R: Source, const ANY: bool>(
         &mut self,
         simd: S,
         rays: &R,
         rest: &mut Vec<usize>,
-        first: usize,
-    ) -> bool {
+        (first, reach): (usize, f32),
+    ) -> Option<Common> {
         let meeting = (rays.len() >= FEWEST as usize)
             .then(|| Meeting::of_two(rays, ANY).or_else(|| Meeting::of_five(rays, ANY)))
             .flatten();
         let Some(Meeting { kind, point, offset, direction }) = meeting else {
             rest.extend(first..first + rays.len());
-            return false;
+            return None;
         };
         // Known beforehand wherever it can be: the loop below is made for one kind then.
         let kind = R::COMMON.unwrap_or(kind);
+        if ANY && R::COMMON.is_none() && kind == Common::Direction {
+            self.gather_parallel(simd, rays, rest, (point, direction), (first, reach));
+            return self.arrange::<S, true>(simd).then_some(kind);
+        }
         // Rays with a common end are looked at from there.
         self.frame = Frame::new(point, offset, direction);
         let turned = match kind {
-            Common::Origin => 1.0,
+            Common::Origin | Common::Direction => 1.0,
             Common::Target => -1.0,
         };
 
@@ -163,7 +185,7 @@ impl Packet {
         let allowed = simd.splat16(self.frame.offset);
         let origin = [simd.splat16(point.x), simd.splat16(point.y), simd.splat16(point.z)];
         let [x_axis, y_axis, z_axis] = self.frame.axes;
-        let (mut count, mut bounded, mut latest) = (0, 0, zero);
+        let (mut bounded, mut latest) = (0, zero);
         for group in 0..GROUP {
             // Sixteen rays, coordinate by coordinate; what is missing behind the last is no ray.
             let here = rays.len().saturating_sub(group * GROUP).min(GROUP);
@@ -172,7 +194,7 @@ impl Packet {
 
             // Which of them pass through the point, and where on their way.
             let (passed, length, from_start) = match kind {
-                Common::Origin => {
+                Common::Origin | Common::Direction => {
                     let [x, y, z] = [ox - origin[0], oy - origin[1], oz - origin[2]];
                     ([x, y, z], end, zero)
                 }
@@ -216,7 +238,7 @@ impl Packet {
             self.scales[group] = scale.to_array();
             // Divisions are slow, and here the length is known.
             let limit = match R::COMMON {
-                Some(Common::Origin) => zero,
+                Some(Common::Origin | Common::Direction) => zero,
                 Some(Common::Target) => scale,
                 None => scale / length,
             };
@@ -224,25 +246,31 @@ impl Packet {
             let limit = never.replaced(members, limit);
             self.nearest[group] = limit.to_array();
             self.primitives[group] = [f32::from_bits(NONE); GROUP];
-            count += members.count_ones();
         }
         self.is_bounded = bounded != 0;
         self.start = 1.0 / latest.greatest();
         self.numbers = NUMBERS;
-        self.measure(simd);
+        self.arrange::<S, false>(simd).then_some(kind)
+    }
+
+    /// Brings the rays into an order in which groups are compact, if need be, and tells whether there are any.
+    #[inline(always)]
+    fn arrange<S: Simd, const PARALLEL: bool>(&mut self, simd: S) -> bool {
+        self.measure::<S, PARALLEL>(simd);
         let scattered = self.scattered(simd);
+        let count = self.members.iter().map(|members| members.count_ones()).sum::<u32>();
         let is_sorted = count >= FEWEST && scattered.count_ones() > 1;
         self.sorted = if is_sorted { scattered } else { 0 };
         if is_sorted {
             self.sort(simd, scattered);
-            self.measure(simd);
+            self.measure::<S, PARALLEL>(simd);
         }
         self.groups.live != 0
     }
 
     /// Computes what the rays of each group have in common.
     #[inline(always)]
-    fn measure<S: Simd>(&mut self, simd: S) {
+    fn measure<S: Simd, const PARALLEL: bool>(&mut self, simd: S) {
         self.groups = Groups::NONE;
         let above = simd.splat16(f32::INFINITY);
         let below = simd.splat16(f32::NEG_INFINITY);
@@ -264,6 +292,6 @@ impl Packet {
             }
         }
         self.groups.prepare(simd);
-        self.groups.look_again(simd);
+        self.groups.look_again::<S, PARALLEL>(simd);
     }
 }

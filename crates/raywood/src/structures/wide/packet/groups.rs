@@ -1,5 +1,6 @@
 //! The groups of a packet: sixteen times sixteen rays, each group in a rectangle of slopes.
 
+use super::frame::Frame;
 use crate::simd::{Float, Simd};
 
 /// By how much of itself the far end of an interval of depths is lengthened against rounding: every depth is off by five roundings at most.
@@ -26,7 +27,7 @@ pub(super) struct Groups {
     /// The least of one over the depth of what the rays have found, or of their ends.
     pub(super) least: [f32; 16],
     /// The depth beyond which nothing counts for any ray of the group.
-    far: [f32; 16],
+    pub(super) far: [f32; 16],
     /// Where reciprocals are positive.
     positive: [[u32; 2]; 2],
     /// The same for the packet as a whole: slopes, their reciprocals, the farthest depth that counts.
@@ -86,9 +87,10 @@ impl Groups {
 
     /// Looks how far the groups still have to look.
     #[inline(always)]
-    pub(super) fn look_again<S: Simd>(&mut self, simd: S) {
+    pub(super) fn look_again<S: Simd, const PARALLEL: bool>(&mut self, simd: S) {
         let least = simd.load16(&self.least);
-        self.far = (simd.splat16(1.0) / least).to_array();
+        let far = if PARALLEL { simd.splat16(0.0) - least } else { simd.splat16(1.0) / least };
+        self.far = far.to_array();
         self.live &= least.less(simd.splat16(f32::INFINITY));
     }
 
@@ -137,14 +139,23 @@ impl Groups {
 
     /// The groups for which depths from `near` on still count.
     #[inline(always)]
-    pub(super) fn reaching<S: Simd>(&self, simd: S, near: f32) -> u32 {
-        let far = simd.load16(&self.far) * simd.splat16(1.0 + SLACK);
+    pub(super) fn reaching<S: Simd, const PARALLEL: bool>(
+        &self,
+        simd: S,
+        frame: &Frame,
+        near: f32,
+    ) -> u32 {
+        let far = simd.load16(&self.far);
+        let far = match PARALLEL {
+            true => far + simd.splat16(frame.offset),
+            false => far * simd.splat16(1.0 + SLACK),
+        };
         simd.splat16(near).less_or_equal(far) & self.live
     }
 
     /// The depth beyond which nothing counts for any ray.
     #[inline(always)]
-    fn farthest<S: Simd>(&self, simd: S) -> f32 {
+    pub(super) fn farthest<S: Simd>(&self, simd: S) -> f32 {
         simd.load16(&self.far).greatest()
     }
 }

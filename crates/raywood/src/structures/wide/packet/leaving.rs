@@ -43,7 +43,9 @@ impl Plane {
         let (height, rise) = (dot(self.normal, start), dot(self.normal, direction));
         let height_certain = height.abs() > ERROR * self.size * length(start);
         let rise_certain = rise.abs() > ERROR * self.size * length(direction);
-        (height * rise > 0.0) & height_certain & rise_certain
+        // The exact test rounds the distance: to zero, which counts, if it is less than the smallest number.
+        let far_enough = height.abs() > f64::from(f32::MIN_POSITIVE) * rise.abs();
+        (height * rise > 0.0) & height_certain & rise_certain & far_enough
     }
 }
 

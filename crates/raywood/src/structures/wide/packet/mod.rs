@@ -1,4 +1,4 @@
-//! Large packets: up to 256 rays through one point, together through the wide tree.
+//! Large packets: up to 256 rays through one point, or in one direction, together through the wide tree.
 //!
 //! Seen from their common point, rays are points of a plane, and everything about them is linear. Sixteen groups of sixteen rays go down the tree
 //! together; a child is entered by the groups whose pyramids meet its box. What is found of a triangle once serves all rays: Wald, Slusallek, Benthin and
@@ -9,6 +9,7 @@ mod frame;
 mod gather;
 mod groups;
 mod leaving;
+mod parallel;
 mod sort;
 #[cfg(test)]
 mod tests;
@@ -17,7 +18,7 @@ mod triangles;
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
 use super::sink::{Sink, SixteenHits};
-use super::source::Source;
+use super::source::{Common, Source};
 use super::step;
 use crate::geometry::LANES;
 use crate::simd::{Float, Simd, dispatch_on};
@@ -34,12 +35,12 @@ pub(super) const RAYS: usize = 256;
 /// How many rays a group has, and a packet groups.
 const GROUP: usize = 16;
 
-/// Rays through one point. A group of sixteen rays a row.
+/// Rays through one point, or parallel ones (see [`parallel`]). A group of sixteen rays a row.
 #[repr(C, align(64))]
 pub(super) struct Packet {
     /// Coordinates per depth, along the frame's first and second axis.
     slopes: [[[f32; GROUP]; GROUP]; 2],
-    /// One over the depth of the closest hit so far, at first of the ray's end; infinite when nothing counts any more.
+    /// One over the depth of the closest hit so far, at first of the ray's end; infinite when nothing counts any more. Of parallel rays the depth's negative.
     nearest: [[f32; GROUP]; GROUP],
     /// The weights of the second and third corner where it was hit, over the depth.
     weights: [[[f32; GROUP]; GROUP]; 2],
@@ -49,7 +50,7 @@ pub(super) struct Packet {
     scales: [[f32; GROUP]; GROUP],
     groups: Groups,
     frame: Frame,
-    /// One over the depth at which the last ray starts to count.
+    /// One over the depth at which the last ray starts to count; infinite for parallel rays.
     start: f32,
     /// Whether any ray ends.
     is_bounded: bool,
@@ -147,15 +148,15 @@ pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    if packet.gather::<S, R, false>(simd, &piece.rays, rest, piece.first) {
+    if packet.gather::<S, R, false>(simd, &piece.rays, rest, (piece.first, 0.0)).is_some() {
         // While the packet is under way, the place for its hits arrives.
         hits.prefetch(simd);
-        packet.trace::<S, G, R, false, FAST>(simd, piece, stack);
+        packet.trace::<S, G, R, false, false, FAST>(simd, piece, stack);
         packet.finish(simd, &piece.rays, hits, rest, piece.first);
     }
 }
 
-/// Finds out whether anything blocks rays that share their origin or their end. Appends the numbers of rays that must be traced otherwise to `rest`.
+/// Finds out whether anything blocks rays that share their origin, their end or their direction. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
 pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
     simd: S,
@@ -165,8 +166,12 @@ pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    if packet.gather::<S, R, true>(simd, &piece.rays, rest, piece.first) {
-        packet.trace::<S, G, R, true, FAST>(simd, piece, stack);
+    let reach = piece.tree.reach;
+    if let Some(kind) = packet.gather::<S, R, true>(simd, &piece.rays, rest, (piece.first, reach)) {
+        match kind {
+            Common::Direction => packet.trace::<S, G, R, true, true, FAST>(simd, piece, stack),
+            _ => packet.trace::<S, G, R, true, false, FAST>(simd, piece, stack),
+        }
         packet.finish_any(simd, occluded, rest, piece.first);
     }
 }
@@ -195,7 +200,14 @@ impl Packet {
 
     /// Sends the packet through the tree.
     #[inline(always)]
-    fn trace<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
+    fn trace<
+        S: Simd,
+        G: Geometry,
+        R: Source,
+        const ANY: bool,
+        const PARALLEL: bool,
+        const FAST: bool,
+    >(
         &mut self,
         simd: S,
         piece: &Piece<'_, G, R>,
@@ -206,12 +218,13 @@ impl Packet {
         }
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
-        stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near: 0.0 };
+        let near = if PARALLEL { f32::NEG_INFINITY } else { 0.0 };
+        stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near };
         let mut top = 1;
         while top > 0 {
             top -= 1;
             let Item { reference, groups, near } = stack[top];
-            let groups = groups & self.groups.reaching(simd, near);
+            let groups = groups & self.groups.reaching::<S, PARALLEL>(simd, &self.frame, near);
             if groups == 0 {
                 continue;
             }
@@ -221,19 +234,26 @@ impl Packet {
                 if top > 0 && stack[top - 1].reference.is_leaf() {
                     top -= 1;
                     let Item { reference, groups, near } = stack[top];
-                    let groups = groups & self.groups.reaching(simd, near);
+                    let groups =
+                        groups & self.groups.reaching::<S, PARALLEL>(simd, &self.frame, near);
                     leaves[1] = Leaf { reference, groups };
                 }
-                self.visit_leaves::<S, G, R, ANY, FAST>(simd, piece, leaves);
+                self.visit_leaves::<S, G, R, ANY, PARALLEL, FAST>(simd, piece, leaves);
             } else {
-                top += self.enter_node(simd, piece.tree, reference, groups, &mut stack[top..]);
+                top += self.enter_node::<S, PARALLEL>(
+                    simd,
+                    piece.tree,
+                    reference,
+                    groups,
+                    &mut stack[top..],
+                );
             }
         }
     }
 
     /// Puts the children of a node that some group meets onto the stack, the nearest last, and tells how many these are.
     #[inline(always)]
-    fn enter_node<S: Simd>(
+    fn enter_node<S: Simd, const PARALLEL: bool>(
         &self,
         simd: S,
         tree: &WideBvh,
@@ -244,7 +264,10 @@ impl Packet {
         // The children that the packet as a whole meets.
         let node = tree.node(reference);
         let boxes = self.frame.boxes(simd, &node.planes);
-        let (met, near) = self.groups.met_by_any(simd, &boxes);
+        let (met, near) = match PARALLEL {
+            true => self.groups.met_by_any_parallel(simd, &self.frame, &boxes),
+            false => self.groups.met_by_any(simd, &boxes),
+        };
         let [[low_x, low_y, low_z], [high_x, high_y, high_z]] = boxes;
         let low = [low_x.to_array(), low_y.to_array(), low_z.to_array()];
         let high = [high_x.to_array(), high_y.to_array(), high_z.to_array()];
@@ -258,7 +281,11 @@ impl Packet {
             simd.prefetch(tree.address(Reference(node.children[lane])));
             let low = [low[0][lane], low[1][lane], low[2][lane]];
             let high = [high[0][lane], high[1][lane], high[2][lane]];
-            meeting[lane] = self.groups.meeting(simd, low, high) & groups;
+            let met = match PARALLEL {
+                true => self.groups.meeting_parallel(simd, &self.frame, low, high),
+                false => self.groups.meeting(simd, low, high),
+            };
+            meeting[lane] = met & groups;
             entered |= u32::from(meeting[lane] != 0) << lane;
         }
 
@@ -282,7 +309,14 @@ impl Packet {
 
     /// Tests the primitives of two leaves against the rays of some groups each.
     #[inline(always)]
-    fn visit_leaves<S: Simd, G: Geometry, R: Source, const ANY: bool, const FAST: bool>(
+    fn visit_leaves<
+        S: Simd,
+        G: Geometry,
+        R: Source,
+        const ANY: bool,
+        const PARALLEL: bool,
+        const FAST: bool,
+    >(
         &mut self,
         simd: S,
         piece: &Piece<'_, G, R>,
@@ -300,7 +334,11 @@ impl Packet {
             }
         }
         let tolerance = if ANY { LARGE_TOLERANCE } else { TOLERANCE };
-        let triangles = Triangles::new(simd, blocks, lanes, &self.frame, &self.groups, tolerance);
+        let (frame, all) = (&self.frame, &self.groups);
+        let triangles = match PARALLEL {
+            true => Triangles::parallel(simd, blocks, lanes, frame, all),
+            false => Triangles::new(simd, blocks, lanes, frame, all, tolerance),
+        };
 
         // Which groups may hit which triangles: first all pairs, then one loop over them, so that the processor foresees its end.
         let mut work = simd.load16(&self.work);
@@ -309,7 +347,8 @@ impl Packet {
         while left != 0 {
             let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
-            let meeting = triangles.groups(simd, lane, &self.groups) & leaves[lane / LANES].groups;
+            let meeting = triangles.groups::<S, PARALLEL>(simd, lane, &self.groups)
+                & leaves[lane / LANES].groups;
             work = work.replaced(meeting, work + simd.splat16(1.0));
             count += simd.push_chosen(meeting, &PAIRS[lane], &mut self.pairs, 1 + count).0;
         }
@@ -319,7 +358,7 @@ impl Packet {
             let (lane, group) = (pair / GROUP % TRIANGLES, pair % GROUP);
             let primitive = f32::from_bits(blocks[lane / LANES].primitives[lane % LANES]);
             let (hit, doubtful) =
-                self.test::<S, ANY, FAST>(simd, &triangles, lane, group, primitive);
+                self.test::<S, ANY, PARALLEL, FAST>(simd, &triangles, lane, group, primitive);
             touched |= u32::from(hit | doubtful != 0) << group;
             if doubtful != 0 {
                 let leaf = leaves[lane / LANES].reference;
@@ -333,7 +372,10 @@ impl Packet {
             let Leaf { reference, groups } = leaves[lane / LANES];
             touched |= groups;
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
-                let members = self.members[group];
+                let mut members = self.members[group];
+                if PARALLEL && others >> lane & 1 == 0 {
+                    members &= triangles.passing(simd, lane, &self.slopes, group);
+                }
                 self.settle::<G, R, ANY>(piece, reference, lane % LANES, group, members);
             }
         }
@@ -345,7 +387,7 @@ impl Packet {
             left &= left - 1;
             self.groups.least[group] = simd.load16(&self.nearest[group]).least();
         }
-        self.groups.look_again(simd);
+        self.groups.look_again::<S, PARALLEL>(simd);
 
         // Give up groups that take more work than their rays would take one by one.
         self.work = work.to_array();
@@ -361,7 +403,7 @@ impl Packet {
 
     /// Tests a triangle against the rays of a group and takes what is certainly hit. Returns the rays for which that is not certain.
     #[inline(always)]
-    fn test<S: Simd, const ANY: bool, const FAST: bool>(
+    fn test<S: Simd, const ANY: bool, const PARALLEL: bool, const FAST: bool>(
         &mut self,
         simd: S,
         triangles: &Triangles,
@@ -389,9 +431,10 @@ impl Packet {
         let (error, certainly) = (triangles.errors[lane], triangles.certain[lane]);
         let nearest = simd.load16(&self.nearest[group]);
         let tolerance = simd.splat16(triangles.tolerances[lane]);
-        let more = depth.mul_add(tolerance, depth);
+        let error_of_depth = if PARALLEL { tolerance } else { depth * tolerance };
+        let more = depth + error_of_depth;
         if ANY {
-            let less = depth - depth * tolerance;
+            let less = depth - error_of_depth;
             let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
             let certain = simd.splat16(certainly).less(least)
                 & nearest.less(less)

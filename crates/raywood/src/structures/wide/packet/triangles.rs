@@ -12,7 +12,7 @@ use crate::simd::{Float, Simd};
 pub(super) const TRIANGLES: usize = 2 * LANES;
 
 /// One rounding.
-const ROUNDING: f32 = f32::EPSILON / 2.0;
+pub(super) const ROUNDING: f32 = f32::EPSILON / 2.0;
 
 /// An edge function's error is at most so many roundings of the product of the largest coordinate, the longest edge and the steepest slope.
 const EDGE_ROUNDINGS: f32 = 40.0;
@@ -24,12 +24,12 @@ const DEPTH_ROUNDINGS: f32 = 16.0;
 const WEIGHT_TOLERANCE: f32 = 1.0 / 64.0;
 
 /// What is outside of this range may have lost digits to underflow or come too near to overflow.
-const LEAST_VOLUME: f32 = 1e-30;
+pub(super) const LEAST_VOLUME: f32 = 1e-30;
 /// See [`LEAST_VOLUME`].
 pub(super) const GREATEST_VOLUME: f32 = 1e30;
 
 /// Four linear functions of a ray's slopes for each of sixteen triangles: the edge functions opposite to each corner, divided so that their sum
-/// is one over the depth, and one over the depth.
+/// is one over the depth, and one over the depth. For parallel rays see [`parallel`](Triangles::parallel).
 #[repr(C, align(64))]
 pub(super) struct Triangles {
     /// For each function its factors for both slopes, and its constant.
@@ -38,10 +38,12 @@ pub(super) struct Triangles {
     pub(super) errors: [f32; TRIANGLES],
     /// Where all edge functions are larger than this, the ray certainly hits, and its depth is known well; infinite where it never is.
     pub(super) certain: [f32; TRIANGLES],
-    /// The relative error of one over the depth.
+    /// The relative error of one over the depth; of parallel rays the error of the depth.
     pub(super) tolerances: [f32; TRIANGLES],
     /// The factors without sign.
-    sizes: [[[f32; TRIANGLES]; 2]; 4],
+    pub(super) sizes: [[[f32; TRIANGLES]; 2]; 4],
+    /// Of parallel rays: the bounds of triangles of which nothing else is known, by axis.
+    pub(super) bounds: [[[f32; TRIANGLES]; 2]; 2],
     /// The triangles that some ray may hit.
     pub(super) possible: u32,
     /// Those among them of which not even the orientation is known.
@@ -49,15 +51,15 @@ pub(super) struct Triangles {
 }
 
 /// A vector in space for each of sixteen triangles.
-type Vectors<F> = [F; 3];
+pub(super) type Vectors<F> = [F; 3];
 
 #[inline(always)]
-fn cross<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+pub(super) fn cross<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[inline(always)]
-fn sub<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+pub(super) fn sub<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -67,12 +69,12 @@ fn add<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
 }
 
 #[inline(always)]
-fn replaced<F: Float>(a: Vectors<F>, lanes: u32, b: Vectors<F>) -> Vectors<F> {
+pub(super) fn replaced<F: Float>(a: Vectors<F>, lanes: u32, b: Vectors<F>) -> Vectors<F> {
     [a[0].replaced(lanes, b[0]), a[1].replaced(lanes, b[1]), a[2].replaced(lanes, b[2])]
 }
 
 #[inline(always)]
-fn largest<F: Float>(a: Vectors<F>) -> F {
+pub(super) fn largest<F: Float>(a: Vectors<F>) -> F {
     a[0].abs().larger(a[1].abs()).larger(a[2].abs())
 }
 
@@ -136,44 +138,68 @@ impl Triangles {
             certain: never.replaced(exact, errors).to_array(),
             tolerances: tolerances.to_array(),
             sizes: [[[0.0; TRIANGLES]; 2]; 4],
+            bounds: [[[0.0; TRIANGLES]; 2]; 2],
             possible: lanes,
             unknown: lanes & !known,
         };
         let zero = simd.splat16(0.0);
         let [edge_a, edge_b, edge_c] = edges;
         let error = errors * simd.splat16(-2.0);
-        let functions = [
-            (edge_a, half, error),
-            (edge_b, half, error),
-            (edge_c, half, error),
-            (normal, reciprocal, zero),
-        ];
+        triangles.fill(
+            simd,
+            groups,
+            [
+                (edge_a, half, error),
+                (edge_b, half, error),
+                (edge_c, half, error),
+                (normal, reciprocal, zero),
+            ],
+        );
+        triangles
+    }
+
+    /// Takes the four functions, each as vectors to be multiplied by a factor, and leaves out triangles where no ray of the packet may have more than the least value that
+    /// comes with them.
+    #[inline(always)]
+    pub(super) fn fill<S: Simd>(
+        &mut self,
+        simd: S,
+        groups: &Groups,
+        functions: [(Vectors<S::F16>, S::F16, S::F16); 4],
+    ) {
         for (number, (vectors, factor, least)) in functions.into_iter().enumerate() {
             let mut greatest = vectors[2] * factor;
-            triangles.functions[number][2] = greatest.to_array();
+            self.functions[number][2] = greatest.to_array();
             for axis in [1, 0] {
                 let factors = vectors[axis] * factor;
                 let sizes = factors.abs();
-                triangles.functions[number][axis] = factors.to_array();
-                triangles.sizes[number][axis] = sizes.to_array();
+                self.functions[number][axis] = factors.to_array();
+                self.sizes[number][axis] = sizes.to_array();
                 greatest = factors.mul_add(simd.splat16(groups.whole_center[axis]), greatest);
                 greatest = sizes.mul_add(simd.splat16(groups.whole_extent[axis]), greatest);
             }
-            triangles.possible &= !greatest.less(least) | triangles.unknown;
+            self.possible &= !greatest.less(least) | self.unknown;
         }
-        triangles
     }
 
     /// The groups that may hit a triangle nearer than what they have.
     ///
     /// The greatest values are off by less than half the error of an edge function, and by less than the tolerance of a depth.
     #[inline(always)]
-    pub(super) fn groups<S: Simd>(&self, simd: S, lane: usize, groups: &Groups) -> u32 {
+    pub(super) fn groups<S: Simd, const PARALLEL: bool>(
+        &self,
+        simd: S,
+        lane: usize,
+        groups: &Groups,
+    ) -> u32 {
         let least = self.greatest(simd, 0, lane, groups);
         let least = self.greatest(simd, 1, lane, groups).smaller(least);
         let least = self.greatest(simd, 2, lane, groups).smaller(least);
-        let nearer = self.greatest(simd, 3, lane, groups)
-            * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0));
+        let nearer = self.greatest(simd, 3, lane, groups);
+        let nearer = match PARALLEL {
+            true => nearer + simd.splat16(3.0 * self.tolerances[lane]),
+            false => nearer * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0)),
+        };
         let error = simd.splat16(-2.0 * self.errors[lane]);
         error.less_or_equal(least) & simd.load16(&groups.least).less(nearer)
     }

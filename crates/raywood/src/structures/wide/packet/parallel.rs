@@ -1,0 +1,273 @@
+//! Parallel rays as a packet: the light comes from so far that only its direction is known.
+//!
+//! Such rays meet in no point, but along them everything is as linear: with coordinates sheared along their direction, a ray is a point `(x, y)` of the
+//! plane, whatever its depth, and a triangle seen from there is a triangle of the plane. What is nearest to the light is what has the least depth, and depth is a
+//! linear function of `(x, y)`, too. It may be negative, and its error is one of the coordinates' size: bounds are absolute here.
+
+use super::frame::Frame;
+use super::gather::NUMBERS;
+use super::groups::Groups;
+use super::triangles::{GREATEST_VOLUME, LEAST_VOLUME, ROUNDING, TRIANGLES, Triangles};
+use super::triangles::{cross, largest, replaced, sub};
+use super::{GROUP, NONE, Packet};
+use crate::geometry::TriangleBlock;
+use crate::simd::{Float, Simd};
+use crate::structures::wide::source::Source;
+use crate::{Ray, Vec3};
+
+/// Rays that start farther away, in any coordinate, do not come with the packet.
+const FARTHEST: f32 = 1e15;
+
+/// A sheared coordinate, and a depth from a box's side, are off by no more than so many roundings of the largest coordinate.
+const ROUNDINGS: f32 = 16.0;
+
+/// An edge function's error is at most so many roundings of the product of the largest coordinate and the longest edge.
+const EDGE_ROUNDINGS: f32 = 256.0;
+
+/// The error of a depth is at most so many roundings of the largest coordinate times the triangle's slant.
+const DEPTH_ROUNDINGS: f32 = 256.0;
+
+/// Of triangles more slanted than this against the rays not even the orientation is certain.
+const GREATEST_SLANT: f32 = 65536.0;
+
+impl Packet {
+    /// As [`gather`](Packet::gather), with rays in one `direction` that never end; `reach` is that of the tree.
+    #[inline(always)]
+    pub(super) fn gather_parallel<S: Simd, R: Source>(
+        &mut self,
+        simd: S,
+        rays: &R,
+        rest: &mut Vec<usize>,
+        (origin, direction): (Vec3, Vec3),
+        (first, reach): (usize, f32),
+    ) {
+        // They are looked at from where they go to.
+        self.frame = Frame::new(origin, 0.0, -direction);
+        let [x_axis, y_axis, z_axis] = self.frame.axes;
+        let depth = self.frame.sign * direction[z_axis];
+        let is_direction =
+            Ray::SHORTEST_DIRECTION <= -depth && -depth < 1.0 / Ray::SHORTEST_DIRECTION;
+        let shear = [direction[x_axis] / depth, direction[y_axis] / depth];
+        self.frame.shear = shear;
+
+        let (zero, never) = (simd.splat16(0.0), simd.splat16(f32::INFINITY));
+        let [shear_x, shear_y] = [simd.splat16(shear[0]), simd.splat16(shear[1])];
+        let mut farthest = zero;
+        for group in 0..GROUP {
+            let here = rays.len().saturating_sub(group * GROUP).min(GROUP);
+            let [ox, oy, oz, start, dx, dy, dz, end] = rays.columns(simd, group * GROUP);
+            let (from, d) = ([ox, oy, oz], [dx, dy, dz]);
+            let from = |axis: usize| from[axis] - simd.splat16(origin[axis]);
+            let z = from(z_axis) * simd.splat16(self.frame.sign);
+            let (x, y) = (from(x_axis) - shear_x * z, from(y_axis) - shear_y * z);
+            let size = largest([x, y, z]);
+            let same = |axis: usize| {
+                let all = simd.splat16(direction[axis]);
+                d[axis].less_or_equal(all) & all.less_or_equal(d[axis])
+            };
+            let members = if is_direction {
+                same(0)
+                    & same(1)
+                    & same(2)
+                    & never.less_or_equal(end)
+                    & start.less_or_equal(zero)
+                    & zero.less_or_equal(start)
+                    & x.abs().less(simd.splat16(FARTHEST))
+                    & y.abs().less(simd.splat16(FARTHEST))
+                    & z.abs().less(simd.splat16(FARTHEST))
+            } else {
+                0
+            };
+            self.members[group] = members;
+            if members.count_ones() as usize != here {
+                let missing = (0..here).filter(|lane| members >> lane & 1 == 0);
+                rest.extend(missing.map(|lane| first + group * GROUP + lane));
+            }
+            farthest = farthest.larger(zero.replaced(members, size));
+            self.slopes[0][group] = zero.replaced(members, x).to_array();
+            self.slopes[1][group] = zero.replaced(members, y).to_array();
+            self.nearest[group] = never.replaced(members, zero - z).to_array();
+            self.scales[group] = [0.0; GROUP];
+            self.primitives[group] = [f32::from_bits(NONE); GROUP];
+        }
+        self.frame.farthest = farthest.greatest();
+        // The root's boxes are as far from the packet's as both are from zero.
+        let reach = reach + origin.abs().max_element() + self.frame.farthest;
+        self.frame.offset = ROUNDINGS * ROUNDING * reach;
+        self.is_bounded = false;
+        self.start = f32::INFINITY;
+        self.numbers = NUMBERS;
+    }
+}
+
+impl Groups {
+    /// The groups that may meet a box: as [`meeting`](Groups::meeting).
+    #[inline(always)]
+    pub(super) fn meeting_parallel<S: Simd>(
+        &self,
+        simd: S,
+        frame: &Frame,
+        low: [f32; 3],
+        high: [f32; 3],
+    ) -> u32 {
+        let mut near = simd.splat16(low[2]);
+        let mut far = simd.load16(&self.far).smaller(simd.splat16(high[2]));
+        for axis in 0..2 {
+            let reciprocal = 1.0 / frame.shear[axis];
+            let [least, most] = &self.slopes[axis];
+            let factor = simd.splat16(reciprocal);
+            let from_low = (simd.splat16(low[axis]) - simd.load16(most)) * factor;
+            let from_high = (simd.splat16(high[axis]) - simd.load16(least)) * factor;
+            // NaN, of rays that run along a box's side, bounds nothing.
+            if reciprocal > 0.0 {
+                (near, far) = (from_low.larger(near), from_high.smaller(far));
+            } else {
+                (near, far) = (from_high.larger(near), from_low.smaller(far));
+            }
+        }
+        near.less_or_equal(far + simd.splat16(frame.offset)) & self.live
+    }
+
+    /// Which of sixteen boxes the packet may meet, and from which depth on: as [`met_by_any`](Groups::met_by_any).
+    #[inline(always)]
+    pub(super) fn met_by_any_parallel<S: Simd>(
+        &self,
+        simd: S,
+        frame: &Frame,
+        [low, high]: &[[S::F16; 3]; 2],
+    ) -> (u32, S::F16) {
+        let mut near = low[2];
+        let mut far = high[2].smaller(simd.splat16(self.farthest(simd)));
+        for axis in 0..2 {
+            let reciprocal = 1.0 / frame.shear[axis];
+            let [least, most] = self.whole[axis];
+            let factor = simd.splat16(reciprocal);
+            let from_low = (low[axis] - simd.splat16(most)) * factor;
+            let from_high = (high[axis] - simd.splat16(least)) * factor;
+            if reciprocal > 0.0 {
+                (near, far) = (from_low.larger(near), from_high.smaller(far));
+            } else {
+                (near, far) = (from_high.larger(near), from_low.smaller(far));
+            }
+        }
+        (near.less_or_equal(far + simd.splat16(frame.offset)), near)
+    }
+}
+
+impl Triangles {
+    /// As [`new`](Triangles::new) for parallel rays: the edge functions are divided so that their sum is one, and the last function is the depth's negative.
+    #[inline(always)]
+    pub(super) fn parallel<S: Simd>(
+        simd: S,
+        blocks: [&TriangleBlock; 2],
+        lanes: u32,
+        frame: &Frame,
+        groups: &Groups,
+    ) -> Self {
+        // The corners in the packet's frame, sheared.
+        let corner = |number| {
+            let [x, y, z] = frame.corners(simd, blocks, number);
+            let [shear_x, shear_y] = frame.shear;
+            [x - simd.splat16(shear_x) * z, y - simd.splat16(shear_y) * z, z]
+        };
+        let (a, b, c) = (corner(0), corner(1), corner(2));
+
+        // Each edge's function: the cross product of its ends' sum and difference, both seen as points of the plane at depth one.
+        let (zero, two) = (simd.splat16(0.0), simd.splat16(2.0));
+        let edge = |from: [S::F16; 3], to: [S::F16; 3]| {
+            let along = [to[0] - from[0], to[1] - from[1]];
+            let constant = (from[0] + to[0]) * along[1] - (from[1] + to[1]) * along[0];
+            ([zero - two * along[1], two * along[0], constant], along)
+        };
+        let ((edge_c, ab), (edge_a, bc), (edge_b, ca)) = (edge(a, b), edge(b, c), edge(c, a));
+        let (first, second, third) = (sub(b, a), sub(c, b), sub(a, c));
+
+        // The plane of the triangle, from its two shorter edges, and twice its area as seen.
+        let sizes = [largest(first), largest(second), largest(third)];
+        let longest = sizes[0].larger(sizes[1]).larger(sizes[2]);
+        let (first_longest, second_longest) =
+            (longest.less_or_equal(sizes[0]), longest.less_or_equal(sizes[1]));
+        let one = replaced(replaced(first, first_longest, second), second_longest, third);
+        let other = replaced(replaced(second, first_longest, third), second_longest, first);
+        let normal = cross(one, other);
+        let area = normal[2];
+        let reciprocal = simd.splat16(1.0) / area;
+        let half = reciprocal * simd.splat16(0.5);
+        let extent = largest(one) * largest(other);
+        let slant = extent * reciprocal.abs();
+
+        // How inexact that is.
+        let reach = largest(a).larger(largest(b)).larger(largest(c));
+        let reach = reach + simd.splat16(frame.farthest);
+        let terms = reach * (longest + extent);
+        let reach = reach * simd.splat16(ROUNDING);
+        let size = |along: [S::F16; 2]| along[0].abs().larger(along[1].abs());
+        let longest = size(ab).larger(size(bc)).larger(size(ca));
+        let errors = reach * simd.splat16(EDGE_ROUNDINGS) * longest * half.abs();
+        let tolerances = reach * simd.splat16(DEPTH_ROUNDINGS) * slant;
+        let size = area.abs();
+        let known = simd.splat16(LEAST_VOLUME).less_or_equal(size)
+            & size.less_or_equal(simd.splat16(GREATEST_VOLUME))
+            & slant.less_or_equal(simd.splat16(GREATEST_SLANT))
+            & (terms + tolerances + errors).less(simd.splat16(GREATEST_VOLUME));
+
+        let constant = zero - normal[0] * a[0] - normal[1] * a[1] - normal[2] * a[2];
+        let mut triangles = Self {
+            functions: [[[0.0; TRIANGLES]; 3]; 4],
+            errors: errors.to_array(),
+            certain: errors.to_array(),
+            tolerances: tolerances.to_array(),
+            sizes: [[[0.0; TRIANGLES]; 2]; 4],
+            bounds: [[[0.0; TRIANGLES]; 2]; 2],
+            possible: lanes,
+            unknown: lanes & !known,
+        };
+        let outside = errors * simd.splat16(-2.0);
+        let farther = tolerances
+            .mul_add(simd.splat16(-3.0), simd.splat16(simd.load16(&groups.least).least()));
+        triangles.fill(
+            simd,
+            groups,
+            [
+                (edge_a, half, outside),
+                (edge_b, half, outside),
+                (edge_c, half, outside),
+                ([normal[0], normal[1], constant], reciprocal, farther),
+            ],
+        );
+
+        // What is seen as a line is asked for ray by ray, so at least it must be where the packet is.
+        if triangles.unknown != 0 {
+            let offset = simd.splat16(frame.offset);
+            let mut apart = 0;
+            for axis in 0..2 {
+                let low = a[axis].smaller(b[axis]).smaller(c[axis]) - offset;
+                let high = a[axis].larger(b[axis]).larger(c[axis]) + offset;
+                let [least, most] = groups.whole[axis];
+                apart |= simd.splat16(most).less(low) | high.less(simd.splat16(least));
+                triangles.bounds[axis] = [low.to_array(), high.to_array()];
+            }
+            triangles.possible &= !(triangles.unknown & apart);
+        }
+        triangles
+    }
+
+    /// The rays of a group that pass a triangle's bounds: those that may meet what is seen as a line.
+    #[inline(always)]
+    pub(super) fn passing<S: Simd>(
+        &self,
+        simd: S,
+        lane: usize,
+        slopes: &[[[f32; GROUP]; GROUP]; 2],
+        group: usize,
+    ) -> u32 {
+        let mut passing = 0xffff;
+        for (bounds, slopes) in self.bounds.iter().zip(slopes) {
+            let [low, high] = bounds;
+            let slopes = simd.load16(&slopes[group]);
+            passing &=
+                !(slopes.less(simd.splat16(low[lane])) | simd.splat16(high[lane]).less(slopes));
+        }
+        passing
+    }
+}
