@@ -25,6 +25,7 @@
 //!   [another geometry](Bvh::overlapping_pairs), and what a [moving sphere](Bvh::sphere_cast) touches first.
 //! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
+//! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
@@ -47,6 +48,7 @@ mod error;
 mod geometry;
 mod hit;
 mod hit_columns;
+mod instances;
 mod minmax;
 mod parallel;
 mod query;
@@ -68,6 +70,9 @@ pub use geometry::{
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
+pub use instances::{
+    BoundsMargin, Instance, InstanceError, ObjectPoint, Tlas, Traceable, Transform, TransformError,
+};
 pub use query::{AcceptAll, Face, HitFilter, HitLists, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};
 pub use ray::Ray;

@@ -32,6 +32,12 @@ impl Nearest {
         Self { best: None, t_max: ray.t_max }
     }
 
+    /// Nothing found yet, and nothing of interest beyond `limit`: it need not be found. Hits are the same as without, for the ray's own interval decides of them.
+    #[inline]
+    pub(crate) fn within(ray: &PreparedRay, limit: f32) -> Self {
+        Self { best: None, t_max: if limit < ray.t_max { limit } else { ray.t_max } }
+    }
+
     /// Tests a primitive. Testing it twice changes nothing.
     #[inline]
     pub(crate) fn test<G: Geometry>(&mut self, geometry: &G, ray: &PreparedRay, primitive: u32) {

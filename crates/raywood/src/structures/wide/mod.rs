@@ -19,6 +19,7 @@ mod step;
 pub(crate) mod sweep;
 #[cfg(test)]
 mod tests;
+pub(crate) mod top;
 pub(crate) mod winding;
 
 use std::ops::ControlFlow;
@@ -152,6 +153,25 @@ impl WideBvh {
             TriangleTest::Fast => dispatch_on(
                 self.level,
                 chosen::Chosen::<_, _, ANY, true> { tree: self, geometry, ray, chooser },
+            ),
+        }
+    }
+
+    /// The closest hit of a ray, unless it lies beyond `limit`: then it, another or none.
+    pub(crate) fn intersect_within<G: Geometry>(
+        &self,
+        geometry: &G,
+        ray: &Ray,
+        limit: f32,
+    ) -> Option<Hit> {
+        match self.triangle_test {
+            TriangleTest::Watertight => dispatch_on(
+                self.level,
+                single::ClosestWithin::<_, false> { tree: self, geometry, ray, limit },
+            ),
+            TriangleTest::Fast => dispatch_on(
+                self.level,
+                single::ClosestWithin::<_, true> { tree: self, geometry, ray, limit },
             ),
         }
     }

@@ -23,45 +23,68 @@ impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Closest<'_, G, P, FAST>
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, probe } = self;
         let ray = PreparedRay::new(ray)?;
-        let mut nearest = Nearest::new(&ray);
-        let slabs = Slabs::new(&ray, tree.reach);
-        let mut stack = SmallStack::new(tree);
-        let (keys, items) = stack.parts();
-        let (mut top, mut current) = (1, tree.root);
-        loop {
-            if current == Reference::NOTHING {
-                return nearest.into_hit();
-            }
-            probe.nodes(1);
-            if current.is_leaf() {
-                probe.primitives(current.count());
-                let hits =
-                    leaf_hits::<S, G, FAST>(simd, tree, geometry, current, &ray, nearest.t_max());
-                take_closest::<S, G, FAST>(
-                    simd,
-                    tree,
-                    geometry,
-                    current,
-                    &hits,
-                    &ray,
-                    &mut nearest,
-                );
-            } else {
-                let node = tree.node(current);
-                probe.boxes(WIDTH);
-                let (met, near) = slabs.children_met(simd, node, nearest.t_max());
-                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
-            }
+        closest::<S, G, P, FAST>(simd, tree, geometry, &ray, Nearest::new(&ray), probe)
+    }
+}
 
-            // On to the next that begins before the closest hit.
-            let end = end_of_keys(nearest.t_max());
-            current = loop {
-                top -= 1;
-                if keys[top] <= end {
-                    break Reference(items[top]);
-                }
-            };
+/// Looks for the closest hit up to a limit: what lies beyond may be found or not.
+pub(super) struct ClosestWithin<'a, G, const FAST: bool> {
+    pub(super) tree: &'a WideBvh,
+    pub(super) geometry: &'a G,
+    pub(super) ray: &'a Ray,
+    pub(super) limit: f32,
+}
+
+impl<G: Geometry, const FAST: bool> Kernel for ClosestWithin<'_, G, FAST> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Option<Hit> {
+        let Self { tree, geometry, ray, limit } = self;
+        let ray = PreparedRay::new(ray)?;
+        let nearest = Nearest::within(&ray, limit);
+        closest::<S, G, (), FAST>(simd, tree, geometry, &ray, nearest, &mut ())
+    }
+}
+
+/// The closest hit of a ray, of which nothing was found yet.
+#[inline(always)]
+fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
+    simd: S,
+    tree: &WideBvh,
+    geometry: &G,
+    ray: &PreparedRay,
+    mut nearest: Nearest,
+    probe: &mut P,
+) -> Option<Hit> {
+    let slabs = Slabs::new(ray, tree.reach);
+    let mut stack = SmallStack::new(tree);
+    let (keys, items) = stack.parts();
+    let (mut top, mut current) = (1, tree.root);
+    loop {
+        if current == Reference::NOTHING {
+            return nearest.into_hit();
         }
+        probe.nodes(1);
+        if current.is_leaf() {
+            probe.primitives(current.count());
+            let hits = leaf_hits::<S, G, FAST>(simd, tree, geometry, current, ray, nearest.t_max());
+            take_closest::<S, G, FAST>(simd, tree, geometry, current, &hits, ray, &mut nearest);
+        } else {
+            let node = tree.node(current);
+            probe.boxes(WIDTH);
+            let (met, near) = slabs.children_met(simd, node, nearest.t_max());
+            top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
+        }
+
+        // On to the next that begins before the closest hit.
+        let end = end_of_keys(nearest.t_max());
+        current = loop {
+            top -= 1;
+            if keys[top] <= end {
+                break Reference(items[top]);
+            }
+        };
     }
 }
 

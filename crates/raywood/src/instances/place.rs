@@ -1,0 +1,215 @@
+//! Instances made ready for rays, and the tree over them.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::transform::{Inverse, RAY_ERROR};
+use super::{
+    BoundsMargin, Built, Instance, InstanceError, ObjectPoint, Tlas, Traceable, Transform,
+};
+use crate::structures::Bvh2;
+use crate::structures::wide::top::TopTree;
+use crate::{
+    Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, PrimitiveHit, Ray, SurfacePoint,
+    parallel,
+};
+
+/// An instance as rays meet it.
+#[derive(Debug)]
+pub(super) struct Placement<B> {
+    inverse: Inverse,
+    mask: u32,
+    /// The number of the first of its instances on the lowest level.
+    pub(super) first: u32,
+    object: Arc<B>,
+    transform: Transform,
+}
+
+impl<B> Clone for Placement<B> {
+    fn clone(&self) -> Self {
+        Self { object: Arc::clone(&self.object), ..*self }
+    }
+}
+
+/// Makes all instances ready and builds the tree over them.
+pub(super) fn build<B: Traceable>(
+    instances: &[Instance<B>],
+    options: &BuildOptions,
+) -> Result<Built<B>, InstanceError> {
+    // Numbers first: instances of scenes count as many as are in them.
+    let (mut leaves, mut firsts) = (0, Vec::with_capacity(instances.len()));
+    for instance in instances {
+        firsts.push(leaves as u32);
+        leaves = instance.object.instances().saturating_add(leaves);
+        if leaves > InstanceError::MAX_INSTANCES {
+            return Err(InstanceError::TooManyInstances { instances: leaves });
+        }
+    }
+    if instances.len() > InstanceError::MAX_INSTANCES {
+        return Err(InstanceError::TooManyInstances { instances: instances.len() });
+    }
+
+    let place = |number: usize| place(&instances[number], firsts[number], number);
+    let placed: Result<Vec<_>, _> = parallel::map(instances.len(), place).into_iter().collect();
+    let mut margin = BoundsMargin::NONE;
+    let (mut placements, mut boxes) = (Vec::with_capacity(instances.len()), Vec::new());
+    for (number, (placement, bounds, own_margin)) in placed?.into_iter().enumerate() {
+        if !bounds.is_empty() {
+            boxes.push((number as u32, bounds));
+            margin = margin.max(own_margin);
+        }
+        placements.push(placement);
+    }
+    let tree = top_tree(boxes, options)?;
+    Ok(Built { placements, tree, margin, leaves: leaves as u32 })
+}
+
+/// An instance made ready, with the box around it and how far beside that rays may hit it.
+fn place<B: Traceable>(
+    instance: &Instance<B>,
+    first: u32,
+    number: usize,
+) -> Result<(Placement<B>, Aabb, BoundsMargin), InstanceError> {
+    let Instance { object, transform, mask, id: _ } = instance;
+    let inverse = transform
+        .inverse()
+        .map_err(|error| InstanceError::BadTransform { instance: number, error })?;
+    let mut bounds = object.bounds();
+    if !bounds.is_empty() {
+        bounds = transform.bounds(&bounds);
+        if !bounds.is_finite() {
+            return Err(InstanceError::BadBounds { instance: number, bounds });
+        }
+    }
+
+    // What rounding moves a ray in the object's space, and what a ray there may pass beside the object's box, both as the world sees it.
+    let (inner, distance) = (object.bounds_margin(), inverse.distance());
+    let inner_share = inner.share * transform.stretch() * inverse.stretch() * ROUNDED;
+    let inner_length = inner.length * transform.stretch() * ROUNDED;
+    let share = RAY_ERROR * transform.condition(&inverse) + inner_share;
+    let margin = BoundsMargin { share, length: share * distance + inner_length };
+    let object = Arc::clone(object);
+    Ok((Placement { inverse, mask: *mask, first, object, transform: *transform }, bounds, margin))
+}
+
+/// What origins of rays may be larger by when they are rounded, and to spare.
+const ROUNDED: f64 = 1.0 + 1e-6;
+
+/// Boxes as a geometry, for builders.
+struct Boxes(Vec<(u32, Aabb)>);
+
+impl Geometry for Boxes {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    #[inline(always)]
+    fn bounds(&self, primitive: u32) -> Aabb {
+        self.0[primitive as usize].1
+    }
+
+    fn intersect(&self, _: u32, _: &PreparedRay) -> Option<PrimitiveHit> {
+        None
+    }
+
+    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        SurfacePoint { position: ray.at(hit.t), normal: crate::Vec3::ZERO, clearance: 0.0 }
+    }
+}
+
+/// The tree over the boxes of numbered instances.
+fn top_tree(boxes: Vec<(u32, Aabb)>, options: &BuildOptions) -> Result<TopTree, InstanceError> {
+    let options = BuildOptions {
+        max_leaf_size: 1,
+        reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
+        ..options.clone()
+    };
+    let boxes = Boxes(boxes);
+    let tree =
+        Bvh2::build_by(options.wide_builder, &boxes, &options).map_err(|error| match error {
+            BuildError::TooManyPrimitives { primitives } => {
+                InstanceError::TooManyInstances { instances: primitives }
+            }
+            BuildError::BadBounds { primitive, bounds } => InstanceError::BadBounds {
+                instance: boxes.0[primitive as usize].0 as usize,
+                bounds,
+            },
+        })?;
+    Ok(TopTree::of(&tree, |entry| boxes.0[entry as usize].0))
+}
+
+/// How often the top-level tree is improved by reinsertion unless the options say it.
+const REINSERTION_PASSES: usize = 4;
+
+impl<B: Traceable> Placement<B> {
+    /// The closest hit with the instance up to a limit, which lies in the scene's units.
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
+        let seen = self.inverse.ray(ray);
+        // Rounding may bring a limit down, so one more.
+        let seen_limit = if seen.unit == 1.0 { limit } else { (limit / seen.unit).next_up() };
+        let hit = self.object.intersect_within(&seen.ray, seen_limit, mask)?;
+        let t = hit.t * seen.unit;
+        // Only a change of units may leave the interval, where numbers end.
+        let counts = ray.t_min <= t && t < ray.t_max;
+        counts.then_some(Hit { t, instance: self.first + hit.instance, ..hit })
+    }
+
+    #[inline(always)]
+    fn occluded(&self, ray: &Ray, mask: u32) -> bool {
+        self.object.occluded_within(&self.inverse.ray(ray).ray, mask)
+    }
+
+    /// The point of a hit, whose instance is that within the object.
+    pub(super) fn point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint {
+        let seen = self.inverse.ray(ray);
+        let hit = Hit { t: hit.t / seen.unit, ..*hit };
+        self.object.object_point(&seen.ray, &hit).placed(&self.transform, &self.inverse)
+    }
+}
+
+impl<B: Traceable> Tlas<B> {
+    /// The closest hit of what the mask lets see, unless it lies beyond the limit.
+    #[inline]
+    pub(super) fn closest(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
+        let prepared = PreparedRay::new(ray)?;
+        let Built { placements, tree, margin, .. } = &self.built;
+        let mut best: Option<Hit> = None;
+        let margin = margin.of(ray);
+        tree.walk(self.level, &prepared, margin, limit, |number, limit| {
+            let place = &placements[number as usize];
+            if place.mask & mask == 0 {
+                return ControlFlow::Continue(limit);
+            }
+            match place.intersect(ray, limit, mask) {
+                Some(hit) if is_nearer(&hit, best.as_ref()) => {
+                    best = Some(hit);
+                    ControlFlow::Continue(limit.min(hit.t))
+                }
+                _ => ControlFlow::Continue(limit),
+            }
+        });
+        best
+    }
+
+    /// Whether anything blocks the ray that the mask lets see.
+    #[inline]
+    pub(super) fn any(&self, ray: &Ray, mask: u32) -> bool {
+        let Some(prepared) = PreparedRay::new(ray) else { return false };
+        let Built { placements, tree, margin, .. } = &self.built;
+        let mut blocked = false;
+        let margin = margin.of(ray);
+        tree.walk(self.level, &prepared, margin, f32::INFINITY, |number, limit| {
+            let place = &placements[number as usize];
+            blocked = place.mask & mask != 0 && place.occluded(ray, mask);
+            if blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
+        });
+        blocked
+    }
+}
+
+/// Whether a hit is nearer than another, or equally near in an instance of a lower number. An instance is met once, so equal numbers do not occur.
+#[inline(always)]
+fn is_nearer(hit: &Hit, best: Option<&Hit>) -> bool {
+    best.is_none_or(|best| hit.t < best.t || (hit.t == best.t && hit.instance < best.instance))
+}

@@ -1,0 +1,107 @@
+//! What can be placed in a scene: a tree over a geometry, or a scene of instances again.
+
+use super::ObjectPoint;
+use crate::structures::AccelerationStructure;
+use crate::{Aabb, Bvh, Geometry, Hit, Ray};
+
+/// What a [`Tlas`](super::Tlas) can have instances of: a [`Bvh`], or a [`Tlas`](super::Tlas) for scenes on several levels.
+///
+/// Scenes of several kinds of geometry have a type of their own that is either, and hands every question on:
+///
+/// ```
+/// use raywood::{Aabb, BoundsMargin, Bvh, Hit, ObjectPoint, Ray, Spheres, Traceable, TriangleMesh};
+///
+/// enum Object {
+///     Mesh(Bvh<TriangleMesh>),
+///     Balls(Bvh<Spheres>),
+/// }
+///
+/// impl Object {
+///     fn get(&self) -> &dyn Traceable {
+///         match self {
+///             Object::Mesh(mesh) => mesh,
+///             Object::Balls(balls) => balls,
+///         }
+///     }
+/// }
+///
+/// impl Traceable for Object {
+///     fn bounds(&self) -> Aabb { self.get().bounds() }
+///     fn bounds_margin(&self) -> BoundsMargin { self.get().bounds_margin() }
+///     fn instances(&self) -> usize { self.get().instances() }
+///     fn intersect_within(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> { self.get().intersect_within(ray, limit, mask) }
+///     fn occluded_within(&self, ray: &Ray, mask: u32) -> bool { self.get().occluded_within(ray, mask) }
+///     fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint { self.get().object_point(ray, hit) }
+/// }
+/// ```
+pub trait Traceable: Send + Sync {
+    /// The box around everything; empty if there is nothing.
+    fn bounds(&self) -> Aabb;
+
+    /// How far beside [`bounds`](Self::bounds) a ray may pass that hits something, by rounding. None by default.
+    fn bounds_margin(&self) -> BoundsMargin {
+        BoundsMargin::NONE
+    }
+
+    /// How many numbers hits tell instances apart by: 1 for what has none.
+    fn instances(&self) -> usize {
+        1
+    }
+
+    /// The closest hit at `t_min <= t < t_max` of what `mask` lets see. What lies beyond `limit` may be left out.
+    fn intersect_within(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit>;
+
+    /// Whether the ray hits anything at `t_min <= t < t_max` that `mask` lets see.
+    fn occluded_within(&self, ray: &Ray, mask: u32) -> bool;
+
+    /// The point that a ray hit. `hit` must be an answer to `ray`.
+    fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint;
+}
+
+/// How far beside a box a ray may pass that hits something inside of it, by rounding: a share of the largest coordinate of the ray's origin, and a length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundsMargin {
+    pub(super) share: f64,
+    pub(super) length: f64,
+}
+
+impl BoundsMargin {
+    /// None: the ray itself meets the box.
+    pub const NONE: Self = Self { share: 0.0, length: 0.0 };
+
+    /// The larger of both.
+    pub(super) fn max(self, other: Self) -> Self {
+        Self { share: self.share.max(other.share), length: self.length.max(other.length) }
+    }
+
+    /// That of a ray, rounded upwards.
+    #[inline(always)]
+    pub(super) fn of(&self, ray: &Ray) -> f32 {
+        let largest = f64::from(ray.origin.abs().max_element());
+        ((self.share * largest + self.length) as f32).next_up()
+    }
+}
+
+impl<G: Geometry + Send> Traceable for Bvh<G> {
+    fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    #[inline]
+    fn intersect_within(&self, ray: &Ray, limit: f32, _mask: u32) -> Option<Hit> {
+        self.tree.intersect_within(&self.geometry, ray, limit)
+    }
+
+    #[inline]
+    fn occluded_within(&self, ray: &Ray, _mask: u32) -> bool {
+        self.tree.occluded(&self.geometry, ray, &mut ())
+    }
+
+    fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint {
+        let point = self.geometry.surface_point(ray, hit);
+        match self.geometry.triangle(hit.primitive) {
+            Some(corners) => ObjectPoint::on_triangle(corners, &point),
+            None => ObjectPoint::from(point),
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Affine transforms, and their inverses in double precision.
+
+use std::fmt;
+
+use crate::double::{Double3, cross, dot, double, single, sub};
+use crate::{Aabb, Ray, Vec3};
+
+/// An affine transform of space: a point `p` goes to `A p + t`, where `A` is any matrix of three by three (rotation, scaling, mirroring, shear) and `t` moves.
+///
+/// As three rows of four numbers, the last of which are `t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Transform {
+    rows: [[f32; 4]; 3],
+}
+
+/// Why a transform cannot place an instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TransformError {
+    /// A coefficient is NaN or infinite.
+    NotFinite,
+    /// It flattens space, or does so when its coefficients change by their last digits: there is no way back.
+    Singular,
+}
+
+impl fmt::Display for TransformError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "has a coefficient that is NaN or infinite",
+            Self::Singular => "flattens space, or nearly so: it cannot be inverted",
+        })
+    }
+}
+
+impl std::error::Error for TransformError {}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Transform {
+    /// The one that leaves everything in its place.
+    pub const IDENTITY: Self =
+        Self::from_rows([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+
+    /// That of three rows.
+    pub const fn from_rows(rows: [[f32; 4]; 3]) -> Self {
+        Self { rows }
+    }
+
+    /// The three rows.
+    pub const fn rows(&self) -> &[[f32; 4]; 3] {
+        &self.rows
+    }
+
+    /// Moves by a vector.
+    pub fn translation(by: impl Into<Vec3>) -> Self {
+        let [x, y, z] = by.into().to_array();
+        Self::from_rows([[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]])
+    }
+
+    /// Scales along the axes; mirrors where a factor is negative.
+    pub fn scaling(by: impl Into<Vec3>) -> Self {
+        let [x, y, z] = by.into().to_array();
+        Self::from_rows([[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]])
+    }
+
+    /// Turns around an axis through the origin, counter-clockwise seen from its end, by an angle in degrees. Around an axis without length nothing turns.
+    pub fn rotation(axis: impl Into<Vec3>, degrees: f32) -> Self {
+        let [x, y, z] = double(axis.into().normalize_or_zero());
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        if x == 0.0 && y == 0.0 && z == 0.0 {
+            return Self::IDENTITY;
+        }
+        // Rodrigues' formula.
+        let c = 1.0 - cos;
+        let rows = [
+            [cos + c * x * x, c * x * y - sin * z, c * x * z + sin * y],
+            [c * x * y + sin * z, cos + c * y * y, c * y * z - sin * x],
+            [c * x * z - sin * y, c * y * z + sin * x, cos + c * z * z],
+        ];
+        Self::from_rows(rows.map(|[a, b, c]| [a as f32, b as f32, c as f32, 0.0]))
+    }
+
+    /// This one, and after it another: computed in double precision and rounded once.
+    pub fn then(&self, next: &Self) -> Self {
+        let column = |j: usize| [0, 1, 2].map(|i| f64::from(self.rows[i][j]));
+        let linear = [0, 1, 2].map(|j| next.vector_in_double(column(j)));
+        let moved = next.point_in_double(column(3));
+        Self::from_rows([0, 1, 2].map(|i| {
+            [linear[0][i] as f32, linear[1][i] as f32, linear[2][i] as f32, moved[i] as f32]
+        }))
+    }
+
+    /// Where a point goes: computed in double precision and rounded once.
+    pub fn point(&self, point: impl Into<Vec3>) -> Vec3 {
+        single(self.point_in_double(double(point.into())))
+    }
+
+    /// What becomes of a vector between two points.
+    pub fn vector(&self, vector: impl Into<Vec3>) -> Vec3 {
+        single(self.vector_in_double(double(vector.into())))
+    }
+
+    pub(super) fn point_in_double(&self, p: Double3) -> Double3 {
+        let [x, y, z] = self.vector_in_double(p);
+        let [tx, ty, tz] = self.rows.map(|row| f64::from(row[3]));
+        [x + tx, y + ty, z + tz]
+    }
+
+    fn vector_in_double(&self, v: Double3) -> Double3 {
+        self.linear().map(|row| dot(row, v))
+    }
+
+    /// The rows of the matrix.
+    fn linear(&self) -> [Double3; 3] {
+        self.rows.map(|[a, b, c, _]| [f64::from(a), f64::from(b), f64::from(c)])
+    }
+
+    /// The way back, if there is one.
+    pub(super) fn inverse(&self) -> Result<Inverse, TransformError> {
+        if !self.rows.as_flattened().iter().all(|number| number.is_finite()) {
+            return Err(TransformError::NotFinite);
+        }
+        // The cofactors: differences of products that are exact, so each is right but for one rounding. The rows of the adjugate are the cofactors' columns.
+        let linear = self.linear();
+        let cofactors = [0, 1, 2].map(|i| cross(linear[(i + 1) % 3], linear[(i + 2) % 3]));
+        let determinant = dot(linear[0], cofactors[0]);
+        let columns = cofactors.map(|column| column.map(|number| number / determinant));
+        let inverse = Inverse { columns, from: self.rows.map(|row| f64::from(row[3])) };
+        let condition = self.condition(&inverse);
+        // NaN, too, is no condition.
+        if condition <= WORST_CONDITION { Ok(inverse) } else { Err(TransformError::Singular) }
+    }
+
+    /// How much larger rounding errors may become on the way there and back: the greatest sum of a row of `|A| |A^-1|`. From 1 to 3 for rotations and any scaling
+    /// along the axes.
+    pub(super) fn condition(&self, inverse: &Inverse) -> f64 {
+        let sum_of = |row: Double3| {
+            // Column k of the inverse, weighted by the row.
+            let entry = |k: usize| dot(row.map(f64::abs), inverse.columns[k].map(f64::abs));
+            entry(0) + entry(1) + entry(2)
+        };
+        let sums = self.linear().map(sum_of);
+        if sums.iter().any(|sum| sum.is_nan()) { f64::NAN } else { largest(sums) }
+    }
+
+    /// The greatest sum of a row of `|A|`: how much longer a coordinate may become.
+    pub(super) fn stretch(&self) -> f64 {
+        largest(self.linear().map(|row| row[0].abs() + row[1].abs() + row[2].abs()))
+    }
+
+    /// A box around a transformed one, which is not empty: rounded outwards, and larger by what rounding of rays that are taken the other way moves points inside.
+    pub(super) fn bounds(&self, bounds: &Aabb) -> Aabb {
+        let (low, high) = (double(bounds.min), double(bounds.max));
+        let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
+        for (axis, row) in self.rows.iter().enumerate() {
+            let (mut least, mut greatest) = (f64::from(row[3]), f64::from(row[3]));
+            let mut error = 0.0;
+            for column in 0..3 {
+                let factor = f64::from(row[column]);
+                let (a, b) = (factor * low[column], factor * high[column]);
+                least += if a < b { a } else { b };
+                greatest += if a < b { b } else { a };
+                error += if a.abs() < b.abs() { b.abs() } else { a.abs() };
+            }
+            let error = error * BOX_ERROR + f64::from(f32::MIN_POSITIVE);
+            min[axis] = ((least - error) as f32).next_down();
+            max[axis] = ((greatest + error) as f32).next_up();
+        }
+        Aabb::new(min, max)
+    }
+}
+
+/// Beyond this condition the last digits of the coefficients decide whether there is an inverse at all.
+const WORST_CONDITION: f64 = (1 << 22) as f64;
+
+/// How far a point on a ray, seen from the world, may lie beside the box that the ray meets in the object's space, in terms of the box's largest coordinates: one rounding, and
+/// one to spare (`docs/numerics.md`, "Instances").
+const BOX_ERROR: f64 = f32::EPSILON as f64;
+
+/// The same in terms of the distance between the ray's origin and the instance's, times the transform's [condition](Transform::condition): two roundings, and one to spare.
+pub(super) const RAY_ERROR: f64 = 1.5 * f32::EPSILON as f64;
+
+/// The largest of three numbers, none of which is NaN.
+pub(super) fn largest(v: Double3) -> f64 {
+    v[0].max(v[1]).max(v[2])
+}
+
+/// The way from the world into an object's space, in double precision: `A^-1 (p - t)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inverse {
+    /// The columns of `A^-1`.
+    columns: [Double3; 3],
+    /// Where the object's origin lies.
+    from: Double3,
+}
+
+/// A ray in an object's space.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ObjectRay {
+    /// The ray.
+    pub(super) ray: Ray,
+    /// How much farther distances are in the world: 1 but for directions that would be too long or too short, then a power of two.
+    pub(super) unit: f32,
+}
+
+/// Directions whose largest coordinate lies between these are taken over as they are.
+const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
+
+impl Inverse {
+    /// A valid ray as the object sees it. Its origin and direction are rounded once.
+    #[inline(always)]
+    pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
+        let origin = self.vector(sub(double(ray.origin), self.from));
+        let direction = self.vector(double(ray.direction));
+        let usual = USUAL_LENGTHS.contains(&largest(direction.map(f64::abs)));
+        let seen = Ray { origin: single(origin), direction: single(direction), ..*ray };
+        if usual { ObjectRay { ray: seen, unit: 1.0 } } else { rescaled(seen, direction) }
+    }
+
+    /// What becomes of a vector.
+    #[inline(always)]
+    fn vector(&self, v: Double3) -> Double3 {
+        let [a, b, c] = &self.columns;
+        [0, 1, 2].map(|i| v[0] * a[i] + v[1] * b[i] + v[2] * c[i])
+    }
+
+    /// The world's normal of a surface that has this one in the object's space, of the length by which heights above the surface are larger in the object's space.
+    pub(super) fn normal(&self, normal: Double3) -> Double3 {
+        self.columns.map(|column| dot(column, normal))
+    }
+
+    /// The greatest sum of a row of `|A^-1|`.
+    pub(super) fn stretch(&self) -> f64 {
+        let [a, b, c] = &self.columns;
+        largest([0, 1, 2].map(|i| a[i].abs() + b[i].abs() + c[i].abs()))
+    }
+
+    /// The largest coordinate of the place of the object's origin.
+    pub(super) fn distance(&self) -> f64 {
+        largest(self.from.map(f64::abs))
+    }
+}
+
+/// A ray in a unit in which its direction is neither too long nor too short.
+#[cold]
+#[inline(never)]
+fn rescaled(seen: Ray, direction: Double3) -> ObjectRay {
+    let length = largest(direction.map(f64::abs));
+    let exponent = if length > 0.0 { length.log2().round().clamp(-120.0, 120.0) } else { 0.0 };
+    let unit = (-exponent).exp2();
+    let direction = single(direction.map(|coordinate| coordinate * unit));
+    // Distances times unit are those of the world.
+    let t = |t: f32| (f64::from(t) / unit) as f32;
+    let ray = Ray { direction, t_min: t(seen.t_min), t_max: t(seen.t_max), ..seen };
+    ObjectRay { ray, unit: unit as f32 }
+}

@@ -1,0 +1,191 @@
+//! A wide tree over boxes alone, of which each leads to something else: the upper level of scenes of instances.
+//!
+//! Boxes stand in the nodes themselves, so that sixteen are tested at once and nothing but what is met is looked into.
+
+use std::ops::ControlFlow;
+
+use super::node::{WIDTH, WideNode};
+use super::slabs::{Slabs, end_of_keys};
+use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
+use crate::structures::Bvh2;
+use crate::{Aabb, PreparedRay};
+
+/// What a lane of a node leads to: an even number is twice that of a node, an odd one one more than twice that of an entry.
+const END: u32 = u32::MAX;
+
+/// The most entries.
+pub(crate) const MAX_ENTRIES: usize = 1 << 30;
+
+/// The tree.
+#[derive(Clone, Debug)]
+pub(crate) struct TopTree {
+    /// The first is the root.
+    nodes: Vec<WideNode>,
+    /// How many nodes lie on the longest way down.
+    depth: usize,
+    /// How far the boxes reach from zero along any axis.
+    reach: f32,
+    bounds: Aabb,
+}
+
+impl TopTree {
+    /// Made from a binary tree of one entry a leaf, whose nodes of largest area are opened until sixteen children are found, and from what
+    /// each primitive leads to. O(N).
+    pub(crate) fn of(tree: &Bvh2, entry: impl Fn(u32) -> u32) -> Self {
+        let bounds = tree.bounds();
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let mut top = Self { nodes: Vec::new(), depth: 0, reach, bounds };
+        if !tree.nodes().is_empty() {
+            top.nodes.reserve(tree.nodes().len() / WIDTH);
+            top.depth = top.add(tree, 0, &entry);
+        } else {
+            top.reach = 0.0;
+        }
+        top
+    }
+
+    /// Adds the wide node of a node of the binary tree and all below it; returns how many lie on the longest way down.
+    fn add(&mut self, tree: &Bvh2, number: usize, entry: &impl Fn(u32) -> u32) -> usize {
+        let nodes = tree.nodes();
+        // Open the largest, again and again.
+        let mut children = [(number, f64::INFINITY); WIDTH];
+        let mut count = 1;
+        while count < WIDTH {
+            let interior = |child: &(usize, &(usize, f64))| !nodes[child.1.0].is_leaf();
+            let largest = children[..count].iter().enumerate().filter(interior);
+            let Some((place, _)) = largest.max_by(|a, b| a.1.1.total_cmp(&b.1.1)) else { break };
+            let left = nodes[children[place].0].left_first() as usize;
+            let child = |number: usize| (number, nodes[number].bounds().half_area());
+            (children[place], children[count]) = (child(left), child(left + 1));
+            count += 1;
+        }
+
+        let own = self.nodes.len();
+        self.nodes.push(WideNode::EMPTY);
+        let mut deepest = 0;
+        for (lane, &(number, _)) in children[..count].iter().enumerate() {
+            let node = &nodes[number];
+            let item = if node.is_leaf() {
+                2 * entry(tree.leaf_primitives(node)[0]) + 1
+            } else {
+                let below = self.nodes.len();
+                deepest = deepest.max(self.add(tree, number, entry));
+                2 * below as u32
+            };
+            self.nodes[own].set_item(lane, &node.bounds(), item);
+        }
+        1 + deepest
+    }
+
+    /// The box around everything; empty if there is nothing.
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// How much memory it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..])
+    }
+
+    /// Tells `visit` of each entry that a ray may meet within its interval when all boxes are larger by `margin`, those that begin first mostly first. It is given the
+    /// limit, and returns the one from there on: entries that begin beyond it are left out. A break ends the walk.
+    #[inline(always)]
+    pub(crate) fn walk<F: FnMut(u32, f32) -> ControlFlow<(), f32>>(
+        &self,
+        level: SimdLevel,
+        ray: &PreparedRay,
+        margin: f32,
+        limit: f32,
+        visit: F,
+    ) {
+        let limit = if limit < ray.t_max { limit } else { ray.t_max };
+        dispatch_on(level, Walk { tree: self, ray, margin, limit, visit });
+    }
+}
+
+impl WideNode {
+    /// Puts an item into a lane.
+    fn set_item(&mut self, lane: usize, bounds: &Aabb, item: u32) {
+        for axis in 0..3 {
+            self.planes[axis][0][lane] = bounds.min[axis];
+            self.planes[axis][1][lane] = bounds.max[axis];
+        }
+        self.children[lane] = item;
+    }
+}
+
+struct Walk<'a, F> {
+    tree: &'a TopTree,
+    ray: &'a PreparedRay,
+    margin: f32,
+    limit: f32,
+    visit: F,
+}
+
+impl<F: FnMut(u32, f32) -> ControlFlow<(), f32>> Kernel for Walk<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { tree, ray, margin, mut limit, mut visit } = self;
+        if tree.nodes.is_empty() {
+            return;
+        }
+        let slabs = Slabs::new(ray, tree.reach + margin).around(margin);
+        let mut stack = TopStack::new(tree.depth);
+        let (keys, items) = stack.parts();
+        let (mut top, mut current) = (1, 0);
+        while current != END {
+            if current & 1 == 1 {
+                match visit(current >> 1, limit) {
+                    ControlFlow::Continue(next) => limit = next,
+                    ControlFlow::Break(()) => return,
+                }
+            } else {
+                let node = &tree.nodes[(current >> 1) as usize];
+                let (met, near) = slabs.children_met(simd, node, limit);
+                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
+            }
+
+            // On to the next that begins before the limit.
+            let end = end_of_keys(limit);
+            current = loop {
+                top -= 1;
+                if keys[top] <= end {
+                    break items[top];
+                }
+            };
+        }
+    }
+}
+
+/// How many items a stack has room for without asking for memory.
+const SMALL: usize = 128;
+
+/// What waits during a walk: on the program's own stack unless the tree is unusually deep.
+struct TopStack {
+    keys: [f32; SMALL],
+    items: [u32; SMALL],
+    large: (Vec<f32>, Vec<u32>),
+}
+
+impl TopStack {
+    #[inline(always)]
+    fn new(depth: usize) -> Self {
+        // Of each node on the way all children but one stay behind, below them lies the end, and sixteen are stored before it is known how many count.
+        let size = (depth + 2) * WIDTH;
+        let large = if size > SMALL { (vec![0.0; size], vec![0; size]) } else { (vec![], vec![]) };
+        Self { keys: [0.0; SMALL], items: [0; SMALL], large }
+    }
+
+    #[inline(always)]
+    fn parts(&mut self) -> (&mut [f32], &mut [u32]) {
+        let (keys, items) = if self.large.0.is_empty() {
+            (&mut self.keys[..], &mut self.items[..])
+        } else {
+            (&mut self.large.0[..], &mut self.large.1[..])
+        };
+        (keys[0], items[0]) = (f32::NEG_INFINITY, END);
+        (keys, items)
+    }
+}
