@@ -491,7 +491,7 @@ fn builds_and_batches_give_the_same_hits() {
             assert_eq!(scene.intersect(ray), *expected, "{preset:?}");
             match (hit, expected) {
                 (Some(hit), Some(expected)) => {
-                    assert!(hit.agrees_with(expected), "{hit:?} {expected:?}")
+                    assert!(hit.agrees_with(expected), "{hit:?} {expected:?}");
                 }
                 _ => assert_eq!(hit, expected, "{ray:?}"),
             }
@@ -508,7 +508,7 @@ fn bad_instances_are_refused_by_number() {
     let refused = |transform: Transform| {
         let good = Instance::new(Arc::clone(&object), Transform::IDENTITY);
         let bad = Instance::new(Arc::clone(&object), transform);
-        Tlas::build(vec![good.clone(), good, bad.clone(), bad]).err().expect("a bad transform")
+        Tlas::build(vec![good.clone(), good, bad.clone(), bad]).expect_err("a bad transform")
     };
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for place in 0..12 {

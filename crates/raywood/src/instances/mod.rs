@@ -71,6 +71,7 @@ impl<B> Clone for Instance<B> {
 ///   first: the numbers tell apart the instances of the lowest level, and [`locate`](Self::locate) says which of this scene's instances one belongs to.
 /// - At exactly equal `t` the lowest instance wins, and of it the lowest primitive.
 /// - No ray slips between triangles of one instance that share an edge.
+/// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) do not count here.
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
 #[derive(Clone, Debug)]
 pub struct Tlas<B = Bvh<TriangleMesh>> {
