@@ -439,6 +439,62 @@ fn distances_are_those_of_the_scene_whatever_the_scale() {
 }
 
 #[test]
+fn intervals_hold_to_the_bit_where_distances_end() {
+    let object = bvh(shapes::grid_box(2, -Vec3::ONE, Vec3::ONE));
+    let cases = [
+        // Usual distances, unusual lengths.
+        (1e-10, 1e12),
+        (1e15, 1e-10),
+        // Next to the least numbers, and less.
+        (1e-19, 1e19),
+        (1e-20, 1e19),
+        (1e-21, 1e20),
+        (1e-22, 1e22),
+        (1e-22, 1e23),
+        // Next to the largest, the far side beyond it, both beyond.
+        (1e19, 1e-18),
+        (7e19, 1e-18),
+        (1e20, 1e-18),
+    ];
+    let mut found = [0; 3];
+    for (scale, length) in cases {
+        let scene = scene(&object, &[Transform::scaling([scale; 3])]);
+        let whole = Ray::new([0.3 * scale, 0.2 * scale, 5.0 * scale], [0.0, 0.0, -length]);
+        let first_from =
+            |t| scene.intersect(&whole.with_interval(t, f32::INFINITY)).map(|hit| hit.t);
+        let near = first_from(0.0);
+        let far = near.and_then(|near| first_from(near.next_up()));
+        let sides: Vec<f32> = near.into_iter().chain(far).collect();
+        found[sides.len()] += 1;
+        for (side, distance) in sides.iter().zip([4.0, 6.0]) {
+            let expected = distance * f64::from(scale) / f64::from(length);
+            let error = 1e-6 * expected + f64::from(f32::from_bits(1));
+            assert!((f64::from(*side) - expected).abs() <= error, "{scale}, {length}: {side}");
+        }
+
+        let mut ends = vec![-1.0, -0.0, 0.0, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY];
+        ends.extend(sides.iter().flat_map(|t| [t.next_down(), *t, t.next_up(), 1.25 * t]));
+        for &t_min in &ends {
+            for &t_max in &ends {
+                let ray = whole.with_interval(t_min, t_max);
+                let (hit, occluded) = (scene.intersect(&ray), scene.occluded(&ray));
+                let what =
+                    format!("scale {scale}, length {length}, {t_min} to {t_max} of {sides:?}");
+                assert_eq!(hit.is_some(), occluded, "{what}");
+                assert!(hit.is_none_or(|hit| t_min <= hit.t && hit.t < t_max), "{what}: {hit:?}");
+                // Hits next to an end of the interval may lie on either side of it by the object's own rounding; but not by that of tiny distances.
+                let at_end = |t: f32, end: f32| t > 1e-40 && (end - t).abs() <= 1e-6 * t;
+                if !sides.iter().any(|t| at_end(*t, t_min) || at_end(*t, t_max)) {
+                    let expected = sides.iter().copied().find(|t| t_min <= *t && *t < t_max);
+                    assert_eq!(hit.map(|hit| hit.t), expected, "{what}");
+                }
+            }
+        }
+    }
+    assert_eq!(found, [1, 1, 8], "scenes of which none, one and both sides are hit");
+}
+
+#[test]
 fn what_moves_counts_from_the_next_rebuild_on() {
     let mut rng = Rng::new(7);
     let object = bvh(shapes::uv_sphere(8, Vec3::ZERO, 1.0));

@@ -146,13 +146,8 @@ impl<B: Traceable> Placement<B> {
     #[inline(always)]
     fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
         let seen = self.inverse.ray(ray);
-        // Rounding may bring a limit down, so one more.
-        let seen_limit = if seen.unit == 1.0 { limit } else { (limit / seen.unit).next_up() };
-        let hit = self.object.intersect_within(&seen.ray, seen_limit, mask)?;
-        let t = hit.t * seen.unit;
-        // Only a change of units may leave the interval, where numbers end.
-        let counts = ray.t_min <= t && t < ray.t_max;
-        counts.then_some(Hit { t, instance: self.first + hit.instance, ..hit })
+        let hit = self.object.intersect_within(&seen.ray, seen.limit(limit), mask)?;
+        Some(Hit { t: hit.t * seen.unit, instance: self.first + hit.instance, ..hit })
     }
 
     #[inline(always)]

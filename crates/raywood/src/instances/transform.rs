@@ -208,6 +208,14 @@ pub(super) struct ObjectRay {
     pub(super) unit: f32,
 }
 
+impl ObjectRay {
+    /// A distance beyond which, in the object's space, all distances lie beyond `limit` in the world.
+    #[inline(always)]
+    pub(super) fn limit(&self, limit: f32) -> f32 {
+        if self.unit == 1.0 { limit } else { first_from(limit.next_up(), self.unit) }
+    }
+}
+
 /// Directions whose largest coordinate lies between these are taken over as they are.
 const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
 
@@ -254,8 +262,29 @@ fn rescaled(seen: Ray, direction: Double3) -> ObjectRay {
     let exponent = if length > 0.0 { length.log2().round().clamp(-120.0, 120.0) } else { 0.0 };
     let unit = (-exponent).exp2();
     let direction = single(direction.map(|coordinate| coordinate * unit));
-    // Distances times unit are those of the world.
-    let t = |t: f32| (f64::from(t) / unit) as f32;
-    let ray = Ray { direction, t_min: t(seen.t_min), t_max: t(seen.t_max), ..seen };
-    ObjectRay { ray, unit: unit as f32 }
+    let unit = unit as f32;
+    // Exactly the distances that lie in the ray's interval once they are those of the world. Nothing behind the origin may round its way in.
+    let t_min = if seen.t_min == 0.0 { 0.0 } else { first_from(seen.t_min, unit) };
+    let ray = Ray { direction, t_min, t_max: first_from(seen.t_max, unit), ..seen };
+    ObjectRay { ray, unit }
+}
+
+/// The least number that times `unit`, rounded, is at least `t`, which is not NaN. Dividing does not find it where numbers end: there many numbers have the same product.
+fn first_from(t: f32, unit: f32) -> f32 {
+    // Numbers of one sign are ordered as their bits are.
+    let largest = f32::INFINITY.to_bits();
+    let first_where = |holds: &dyn Fn(f32) -> bool| {
+        let (mut low, mut high) = (0, largest + 1);
+        while low < high {
+            let middle = (low + high) / 2;
+            if holds(f32::from_bits(middle)) { high = middle } else { low = middle + 1 }
+        }
+        low
+    };
+    if t > 0.0 {
+        f32::from_bits(first_where(&|number| number * unit >= t))
+    } else {
+        // Zero never lies beyond, so there is one before the first that does.
+        -f32::from_bits(first_where(&|number| number * unit > -t) - 1)
+    }
 }
