@@ -68,24 +68,42 @@ impl OutputFile {
         &self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        self.write_with(|writer| content(writer).map_err(|error| self.cannot_write(&error)))
+    }
+
+    /// As [`write`](Self::write), for content that may fail for other reasons, or that goes back in the file. It need not flush.
+    pub(crate) fn write_with<T>(
+        &self,
+        content: impl FnOnce(&mut BufWriter<File>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
         let guard = DeleteOnInterrupt::new(&self.temporary);
-        let written = File::create(&self.temporary).and_then(|file| {
+        let create = || {
+            let file = File::create(&self.temporary)?;
             // Who may read the old file may read the new one, and nobody else.
             if let Ok(old) = fs::metadata(&self.target) {
                 file.set_permissions(old.permissions())?;
             }
-            let mut writer = BufWriter::new(file);
-            content(&mut writer)?;
-            writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+            Ok(BufWriter::new(file))
+        };
+        let complain = |error| self.cannot_write(&error);
+        let written = create().map_err(complain).and_then(|mut writer| {
+            let result = content(&mut writer)?;
+            let file = writer.into_inner().map_err(io::IntoInnerError::into_error);
+            file.and_then(|file| file.sync_all()).map_err(complain)?;
+            Ok(result)
         });
-        guard.finish(|| written.and_then(|()| fs::rename(&self.temporary, &self.target))).map_err(
-            |error| {
-                let _ = fs::remove_file(&self.temporary);
-                Failure::WhileRunning(format!(
-                    "{}: could not be written: {error}",
-                    self.name.display()
-                ))
-            },
-        )
+        let rename = || {
+            let result = written?;
+            fs::rename(&self.temporary, &self.target).map_err(complain)?;
+            Ok(result)
+        };
+        guard.finish(rename).inspect_err(|_| {
+            let _ = fs::remove_file(&self.temporary);
+        })
+    }
+
+    /// Writing fails.
+    pub(crate) fn cannot_write(&self, error: &io::Error) -> Failure {
+        Failure::WhileRunning(format!("{}: could not be written: {error}", self.name.display()))
     }
 }
