@@ -11,7 +11,7 @@ use crate::parse::build_preset;
 pub(crate) struct BuildArgs {
     /// fastest, fast, balanced, high or best build
     ///
-    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. The picture does not change.
+    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. What comes out does not change.
     #[arg(long = "build", value_name = "PRESET", value_parser = build_preset, default_value = "balanced", hide_default_value = true)]
     pub(crate) preset: BuildPreset,
 }

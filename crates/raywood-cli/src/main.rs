@@ -10,6 +10,7 @@ mod parse;
 mod picture;
 mod print;
 mod progress_bar;
+mod query;
 mod report;
 mod scene_source;
 mod simd_args;

@@ -48,6 +48,22 @@ pub(crate) fn during_rendering<T: Send>(
     })
 }
 
+/// Runs work on rows while a bar shows how many are done, or a counter where nobody knows how many there are. The work says of rows that they are done.
+pub(crate) fn during_rows<T>(
+    name: &str,
+    total: Option<u64>,
+    work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> T,
+) -> T {
+    let line = match total {
+        Some(_) => new_line("{msg} [{wide_bar}] {percent}% {eta} left", total),
+        None => new_line("{spinner} {msg} {human_pos} {elapsed}", None),
+    };
+    line.set_message(name.to_owned());
+    let result = work(&|rows| line.inc(rows));
+    line.finish_and_clear();
+    result
+}
+
 /// A line on standard error, hidden where that is no terminal.
 fn new_line(template: &str, length: Option<u64>) -> ProgressBar {
     let target = if stderr().is_terminal() {

@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod info;
 mod lecture;
+mod query;
 mod render;
 mod scenes;
 
@@ -19,6 +20,7 @@ pub(crate) enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Bench(bench::Args),
+    Query(query::Args),
     Info(info::Args),
     Lecture(lecture::Args),
     Scenes(scenes::Args),
@@ -31,6 +33,7 @@ impl Command {
             Self::Render(args) => render::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Bench(args) => bench::run(args),
+            Self::Query(args) => query::run(args),
             Self::Info(args) => info::run(args),
             Self::Lecture(args) => lecture::run(args),
             Self::Scenes(args) => scenes::run(args),
