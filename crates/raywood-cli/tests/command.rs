@@ -307,9 +307,16 @@ fn a_picture_of_nothing_is_said_to_be_one() {
 #[test]
 fn help_fits_a_screen() {
     let folder = folder("help");
-    for arguments in
-        ["-h", "render -h", "compare -h", "bench -h", "lecture -h", "info -h", "scenes -h"]
-    {
+    for arguments in [
+        "-h",
+        "render -h",
+        "compare -h",
+        "bench -h",
+        "query -h",
+        "lecture -h",
+        "info -h",
+        "scenes -h",
+    ] {
         let text = stdout(&run(&folder, arguments));
         let lines = text.lines().count();
         assert!((5..=24).contains(&lines), "{arguments} has {lines} lines:\n{text}");
