@@ -12,6 +12,9 @@ const STEEPEST: f32 = 20.0;
 /// With fewer rays a packet is not worth while.
 const FEWEST: u32 = 32;
 
+/// Groups of fewer rays on average are brought together.
+const ENOUGH: u32 = 12;
+
 /// Points are taken for one that differ by no more than so many roundings of the coordinates on the way.
 const ROUNDINGS: f32 = 4.0 * f32::EPSILON;
 
@@ -257,8 +260,13 @@ impl Packet {
     #[inline(always)]
     fn arrange<S: Simd, const PARALLEL: bool>(&mut self, simd: S) -> bool {
         self.measure::<S, PARALLEL>(simd);
-        let scattered = self.scattered(simd);
+        let mut scattered = self.scattered(simd);
         let count = self.members.iter().map(|members| members.count_ones()).sum::<u32>();
+        let live = self.groups.live;
+        if count < live.count_ones() * ENOUGH {
+            // Where others come between the rays, as such to another light do, sorting also brings them together in fewer groups.
+            scattered = live;
+        }
         let is_sorted = count >= FEWEST && scattered.count_ones() > 1;
         self.sorted = if is_sorted { scattered } else { 0 };
         if is_sorted {

@@ -7,7 +7,7 @@
 use super::frame::Frame;
 use super::gather::NUMBERS;
 use super::groups::Groups;
-use super::triangles::{GREATEST_VOLUME, LEAST_VOLUME, ROUNDING, TRIANGLES, Triangles};
+use super::triangles::{Function, GREATEST_VOLUME, LEAST_VOLUME, ROUNDING, TRIANGLES, Triangles};
 use super::triangles::{cross, largest, replaced, sub};
 use super::{GROUP, NONE, Packet};
 use crate::geometry::TriangleBlock;
@@ -229,10 +229,14 @@ impl Triangles {
             simd,
             groups,
             [
-                (edge_a, half, outside),
-                (edge_b, half, outside),
-                (edge_c, half, outside),
-                ([normal[0], normal[1], constant], reciprocal, farther),
+                Function { vectors: edge_a, factor: half, least: outside },
+                Function { vectors: edge_b, factor: half, least: outside },
+                Function { vectors: edge_c, factor: half, least: outside },
+                Function {
+                    vectors: [normal[0], normal[1], constant],
+                    factor: reciprocal,
+                    least: farther,
+                },
             ],
         );
 

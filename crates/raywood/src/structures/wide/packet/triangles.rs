@@ -53,6 +53,15 @@ pub(super) struct Triangles {
 /// A vector in space for each of sixteen triangles.
 pub(super) type Vectors<F> = [F; 3];
 
+/// A linear function of a ray's slopes for each of sixteen triangles.
+pub(super) struct Function<F> {
+    /// What both slopes and one are multiplied by, but for the factor.
+    pub(super) vectors: Vectors<F>,
+    pub(super) factor: F,
+    /// No ray with less hits the triangle.
+    pub(super) least: F,
+}
+
 #[inline(always)]
 pub(super) fn cross<F: Float>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -149,25 +158,24 @@ impl Triangles {
             simd,
             groups,
             [
-                (edge_a, half, error),
-                (edge_b, half, error),
-                (edge_c, half, error),
-                (normal, reciprocal, zero),
+                Function { vectors: edge_a, factor: half, least: error },
+                Function { vectors: edge_b, factor: half, least: error },
+                Function { vectors: edge_c, factor: half, least: error },
+                Function { vectors: normal, factor: reciprocal, least: zero },
             ],
         );
         triangles
     }
 
-    /// Takes the four functions, each as vectors to be multiplied by a factor, and leaves out triangles where no ray of the packet may have more than the least value that
-    /// comes with them.
+    /// Takes the four functions, and leaves out triangles where no ray of the packet can reach what one of them must have.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(
         &mut self,
         simd: S,
         groups: &Groups,
-        functions: [(Vectors<S::F16>, S::F16, S::F16); 4],
+        functions: [Function<S::F16>; 4],
     ) {
-        for (number, (vectors, factor, least)) in functions.into_iter().enumerate() {
+        for (number, Function { vectors, factor, least }) in functions.into_iter().enumerate() {
             let mut greatest = vectors[2] * factor;
             self.functions[number][2] = greatest.to_array();
             for axis in [1, 0] {
