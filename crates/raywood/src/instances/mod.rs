@@ -69,7 +69,7 @@ impl<B> Clone for Instance<B> {
 ///   Directions are not normalised there, so that distances are those of the scene.
 /// - [`Hit::instance`] is the number of the instance, from 0. Where objects are scenes themselves, instances are numbered through in order, those of the first object
 ///   first: the numbers tell apart the instances of the lowest level, and [`locate`](Self::locate) says which of this scene's instances one belongs to.
-/// - At exactly equal `t` the lowest instance wins, and of it the lowest primitive.
+/// - At exactly equal `t` the lowest instance wins, and of it the primitive that its object finds: the lowest one, but where distances that differ there are one after rounding here.
 /// - No ray slips between triangles of one instance that share an edge.
 /// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) do not count here.
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
@@ -192,7 +192,7 @@ impl<B: Traceable> Tlas<B> {
         self.level = if level.is_available() { level } else { SimdLevel::Portable };
     }
 
-    /// The closest hit at `t_min <= t < t_max`; of equally near ones that of the lowest instance, and of it that of the lowest primitive.
+    /// The closest hit at `t_min <= t < t_max`; of equally near ones that of the lowest instance.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         self.intersect_masked(ray, u32::MAX)

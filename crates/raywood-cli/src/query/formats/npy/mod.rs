@@ -8,7 +8,7 @@
 //! | that many        | a Python dictionary: `{'descr': '<f4', 'fortran_order': False, 'shape': (100, 6), }`, spaces, a line's end |
 //! | the rest         | the numbers, row after row, or in Fortran order column after column                        |
 //!
-//! Read here rather than by a crate: those that there are bring a parser generator and C along for this dictionary.
+//! Read here rather than by a crate: those that there are bring a parser generator along for this dictionary.
 //!
 //! In: shape (N, 6) of rays, origin and direction; (N, 8) with `t_min` and `t_max`; (N, 3) of points; numbers of any real type, of any byte order, in C or
 //! Fortran order. Out: an array of shape (N,) or (N, 3) if there is one column, else a structured array, whose columns are read as `hits["t"]`; lists of
