@@ -24,6 +24,9 @@ use crate::simd_args::SimdArgs;
 
 /// What follows the list of options.
 const AFTER_HELP: &str = "\
+Kinds: of rays closest (default), any, all, count;
+       of points closest-point (default), inside, signed-distance
+
 Try:
   raywood query part.stl --rays rays.npy -o hits.npz
   raywood query part.stl --points points.csv --kind inside -o inside.csv";
@@ -100,7 +103,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
-    /// Of rays closest, any, all or count; of points closest-point, inside or signed-distance; else the first
+    /// What to ask, one of the kinds below
     ///
     /// closest: where each ray first hits something. any: whether it hits anything. all: everything that it hits, nearest first, each crossing of a surface once. count: how many hits `all` would give. closest-point: the point of a surface that is closest to each point. inside: whether the point is inside of a solid. signed-distance: how far it is from the surface, negative inside.
     #[arg(short, long, value_name = "KIND", value_enum, hide_possible_values = true)]
