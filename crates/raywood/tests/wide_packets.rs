@@ -226,6 +226,122 @@ fn parallel_rays_over_nasty_meshes_agree_with_single_rays() {
     }
 }
 
+/// Rays whose lines meet in `image`, as those of a pinhole there that a plane mirror has turned: they start where the plane is, a little beside it.
+fn reflected(image: Vec3, towards: Vec3, width: f32, plane: [Vec3; 2], count: usize) -> Vec<Ray> {
+    let [point, normal] = plane;
+    let mut rays = pinhole(image, towards, width, count);
+    for ray in &mut rays {
+        let t = normal.dot(point - ray.origin) / normal.dot(ray.direction);
+        let beside = 1e-5 * ray.direction.dot(normal).signum() * (ray.at(t) - image).length();
+        ray.origin = ray.at(t.abs()) + beside * normal;
+    }
+    rays
+}
+
+#[test]
+fn reflected_rays_over_nasty_meshes_agree_with_single_rays() {
+    let mut rng = Rng::new(31);
+    for nasty in nasty::all() {
+        let bounds = nasty.mesh.bounds_of_all();
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        let size = half.max_element().max(1e-30);
+        let is_empty = nasty.mesh.len() == 0;
+        let mut structure = build(&nasty.mesh);
+        for turn in 0..18 {
+            let width = [0.02, 0.3, 1.5][turn % 3];
+            let image = center + 2.0 * size * rng.direction();
+            let towards = center + 0.3 * size * rng.in_cube();
+
+            // The mirror may be a triangle of the mesh, where the rays start.
+            let corners = (!is_empty && turn % 2 == 0)
+                .then(|| nasty.mesh.triangle(rng.below(nasty.mesh.len()) as u32))
+                .flatten();
+            let (point, normal) = match corners {
+                Some([a, b, c]) => (a, (b - a).cross(c - a).normalize_or_zero()),
+                None => (center + 0.5 * size * rng.in_cube(), rng.direction()),
+            };
+            let mut rays = reflected(image, towards, width, [point, normal], 290);
+            match turn / 6 {
+                // Exactly on the mesh; or passing by the image, some more and some less.
+                1 => {
+                    for number in (0..rays.len()).step_by(3).filter(|_| !is_empty) {
+                        let corners = nasty.mesh.triangle(rng.below(nasty.mesh.len()) as u32);
+                        if let Some([a, b, c]) = corners {
+                            let (u, v) = (rng.range(0.0, 0.5), rng.range(0.0, 0.5));
+                            let on_mesh = a + u * (b - a) + v * (c - a);
+                            rays[number] = Ray::new(on_mesh, on_mesh - image);
+                        }
+                    }
+                }
+                2 => {
+                    for ray in &mut rays {
+                        ray.origin += 1e-6 * size * rng.in_cube();
+                    }
+                }
+                _ => {}
+            }
+            check(&mut structure, &rays, nasty.name);
+        }
+    }
+}
+
+#[test]
+fn reflected_rays_meet_what_is_close_to_the_mirror() {
+    // A floor under fine soup: hits at all distances from the start, the nearest of them far below what depths from the image can tell.
+    let mut rng = Rng::new(33);
+    let floor = [Vec3::new(-3.0, 0.0, -3.0), Vec3::new(9.0, 0.0, -3.0), Vec3::new(-3.0, 0.0, 9.0)];
+    let mut corners = floor.to_vec();
+    for _ in 0..3000 {
+        let above = 10f32.powf(rng.range(-7.0, 0.0));
+        let at = Vec3::new(rng.range(-2.0, 2.0), above, rng.range(-2.0, 2.0));
+        corners.extend([0, 1, 2].map(|_| at + 0.1 * rng.in_cube()));
+        corners.extend([0, 1, 2].map(|_| at + 0.1 * above.min(1.0) * rng.in_cube()));
+    }
+    let triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let mesh = TriangleMesh::new(corners, triangles).expect("a mesh");
+    let mut structure = build(&mesh);
+    for image in [Vec3::new(0.3, -1.5, -2.0), Vec3::new(0.0, -40.0, 3.0)] {
+        for towards in [Vec3::ZERO, Vec3::new(1.0, 0.5, 1.0)] {
+            let mut rays = reflected(image, towards, 1.2, [Vec3::ZERO, Vec3::Y], 2000);
+            check(&mut structure, &rays, "floor");
+            // Above the floor already, where things are.
+            for ray in &mut rays {
+                ray.origin = ray.at(10f32.powf(rng.range(-6.0, -0.5)));
+            }
+            check(&mut structure, &rays, "above the floor");
+        }
+    }
+}
+
+#[test]
+fn rays_of_several_packets_in_turn_agree_with_single_rays() {
+    let mesh = shapes::soup(3000, 0.2, 12);
+    let mut structure = build(&mesh);
+    let mut rng = Rng::new(13);
+    let lights = [Vec3::new(0.0, 3.0, 1.0), Vec3::new(-2.0, 2.0, 0.0), Vec3::new(2.0, 0.0, 2.0)];
+    let eyes = [Vec3::new(0.0, 0.1, -3.0), Vec3::new(0.2, 0.0, -3.0)];
+    let mirror = [Vec3::new(0.0, -0.8, 0.0), Vec3::Y];
+    let image = Vec3::new(0.1, -2.0, -2.5);
+    let seen = eyes.map(|eye| pinhole(eye, Vec3::ZERO, 0.6, 1000));
+    let mirrored = reflected(image, Vec3::ZERO, 0.5, mirror, 1000);
+    let mut rays = Vec::new();
+    for number in 0..1000 {
+        let from = rng.in_cube();
+        let other = match number % 7 {
+            0 | 3 => seen[number / 7 % 2][number],
+            1 | 4 | 5 => Ray::between(from, lights[number % 3]),
+            2 => Ray::new(from, Vec3::new(0.2, 1.0, -0.3)),
+            _ => mirrored[number],
+        };
+        rays.push(other);
+    }
+    check(&mut structure, &rays, "of all kinds in turn");
+    let (_, apart): (Vec<_>, Vec<_>) = rays.iter().partition(|ray| ray.t_max < 2.0);
+    check(&mut structure, &apart, "without those to lights");
+    rays.sort_by(|a, b| a.direction.x.total_cmp(&b.direction.x));
+    check(&mut structure, &rays, "in another order");
+}
+
 #[test]
 fn rays_of_any_kind_among_others_change_nothing_for_these() {
     let mesh = shapes::soup(3000, 0.2, 3);
@@ -299,12 +415,17 @@ fn packets_do_not_slip_through_edges() {
                 rays.push(Ray::new(origin, target - origin));
             }
         }
-        let mut hits = vec![None; rays.len()];
-        structure.intersect_batch(&rays, &mut hits);
-        let mut blocked = vec![false; rays.len()];
-        structure.occluded_batch(&rays, &mut blocked);
-        for ((ray, hit), blocked) in rays.iter().zip(hits).zip(blocked) {
-            assert!(hit.is_some() && blocked, "{ray:?} slips through");
+        // The same from farther on, as if that point were an image of it.
+        let late: Vec<_> =
+            rays.iter().map(|ray| Ray { origin: ray.at(rng.range(0.1, 0.6)), ..*ray }).collect();
+        for rays in [rays, late] {
+            let mut hits = vec![None; rays.len()];
+            structure.intersect_batch(&rays, &mut hits);
+            let mut blocked = vec![false; rays.len()];
+            structure.occluded_batch(&rays, &mut blocked);
+            for ((ray, hit), blocked) in rays.iter().zip(hits).zip(blocked) {
+                assert!(hit.is_some() && blocked, "{ray:?} slips through");
+            }
         }
     }
 }

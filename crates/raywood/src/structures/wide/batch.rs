@@ -11,7 +11,7 @@ use super::source::Source;
 use super::step::{any_blocks, leaf_hits, take_closest};
 use super::{WideBvh, packet};
 use crate::geometry::BlockHits;
-use crate::simd::{Kernel, Simd};
+use crate::simd::{Kernel, Simd, dispatch_on};
 use crate::traverse::nearest::Nearest;
 use crate::{AccelerationStructure, Geometry};
 
@@ -45,7 +45,8 @@ impl<G: Geometry, R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, G
             hits.set(number, None);
         }
         let finish = |number: usize, nearest: Nearest| hits.set(number, nearest.into_hit());
-        let spilled = wave::<S, G, R, _, false, FAST>(simd, tree, geometry, rays, &rest, finish);
+        let wave = Wave::<G, R, _, false, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
             hits.set(number, tree.intersect(geometry, &rays.ray(number), &mut ()));
         }
@@ -85,7 +86,8 @@ impl<G: Geometry, R: Source, const FAST: bool> Kernel for Any<'_, G, R, FAST> {
             occluded[number] = false;
         }
         let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
-        let spilled = wave::<S, G, R, _, true, FAST>(simd, tree, geometry, rays, &rest, finish);
+        let wave = Wave::<G, R, _, true, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
             occluded[number] = tree.occluded(geometry, &rays.ray(number), &mut ());
         }
@@ -95,105 +97,111 @@ impl<G: Geometry, R: Source, const FAST: bool> Kernel for Any<'_, G, R, FAST> {
 /// Where there is no ray in flight: neither a node nor a leaf, nor the end of a ray's way.
 const IDLE: u32 = Reference::NOTHING.0 - 2;
 
-/// Traces all valid rays and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that found no room
-/// for their stacks and must be traced otherwise.
-#[inline(always)]
-fn wave<
-    S: Simd,
-    G: Geometry,
-    R: Source,
-    F: FnMut(usize, Nearest),
-    const ANY: bool,
-    const FAST: bool,
->(
-    simd: S,
-    tree: &WideBvh,
-    geometry: &G,
+/// Traces all valid ones of the given rays and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that
+/// found no room for their stacks and must be traced otherwise.
+///
+/// A function of its own: together with the packets, its loops would be short of registers.
+struct Wave<'a, G, R, F, const ANY: bool, const FAST: bool> {
+    tree: &'a WideBvh,
+    geometry: &'a G,
     rays: R,
-    numbers: &[usize],
-    mut finish: F,
-) -> Vec<usize> {
-    let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
-    let mut waiting = rays.filter(|(_, ray)| ray.is_valid());
-    let mut flights = Vec::with_capacity(RAYS.min(numbers.len()));
-    let mut currents = [IDLE; RAYS];
-    for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
-        *current = tree.root.0;
-        flights.push(Flight::new(&ray, number, tree.reach));
-    }
-    let flights = &mut flights[..];
-    let mut spilled = Vec::new();
-    let mut lists = [[0; RAYS + 16]; 3];
-    let mut hits = [const { (0, BlockHits::NONE) }; RAYS + 1];
-    loop {
-        // Find out which rays do what next: all sixteen places at a time, without a branch.
-        let counts = simd.partition(&currents, IDLE, Reference::NOTHING.0, &mut lists);
-        let [nodes, leaves, done] = &lists;
-        let (nodes, leaves, done) = (&nodes[..counts[0]], &leaves[..counts[1]], &done[..counts[2]]);
-        if counts == [0; 3] {
-            return spilled;
-        }
+    numbers: &'a [usize],
+    finish: F,
+}
 
-        // Those whose way has ended make room for others.
-        for &place in done {
-            let place = place as usize;
-            let flight = &mut flights[place];
-            let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
-            finish(flight.number, ended);
-            currents[place] = IDLE;
-            if let Some((number, ray)) = waiting.next() {
-                flight.begin(&ray, number, tree.reach);
-                currents[place] = tree.root.0;
+impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Kernel
+    for Wave<'_, G, R, F, ANY, FAST>
+{
+    type Output = Vec<usize>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Vec<usize> {
+        let Self { tree, geometry, rays, numbers, mut finish } = self;
+        let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
+        let mut waiting = rays.filter(|(_, ray)| ray.is_valid());
+        let mut flights = Vec::with_capacity(RAYS.min(numbers.len()));
+        let mut currents = [IDLE; RAYS];
+        for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
+            *current = tree.root.0;
+            flights.push(Flight::new(&ray, number, tree.reach));
+        }
+        let flights = &mut flights[..];
+        let mut spilled = Vec::new();
+        let mut lists = [[0; RAYS + 16]; 3];
+        let mut hits = [const { (0, BlockHits::NONE) }; RAYS + 1];
+        loop {
+            // Find out which rays do what next: all sixteen places at a time, without a branch.
+            let counts = simd.partition(&currents, IDLE, Reference::NOTHING.0, &mut lists);
+            let [nodes, leaves, done] = &lists;
+            let (nodes, leaves, done) =
+                (&nodes[..counts[0]], &leaves[..counts[1]], &done[..counts[2]]);
+            if counts == [0; 3] {
+                return spilled;
             }
-        }
 
-        for &place in nodes {
-            let place = place as usize;
-            let flight = &mut flights[place];
-            if flight.is_full() {
-                spilled.push(flight.number);
-                currents[place] = Reference::NOTHING.0;
-                continue;
-            }
-            let next = flight.visit::<S, ANY>(simd, tree.node(Reference(currents[place])));
-            simd.prefetch(tree.address(next));
-            currents[place] = next.0;
-        }
-
-        // Test all leaves, and then look closer where something may be hit.
-        let mut count = 0;
-        for &place in leaves {
-            let place = place as usize;
-            let flight = &mut flights[place];
-            let leaf = Reference(currents[place]);
-            let found = leaf_hits::<S, G, FAST>(
-                simd,
-                tree,
-                geometry,
-                leaf,
-                &flight.ray,
-                flight.nearest.t_max(),
-            );
-            let some = found.hit | found.doubtful != 0;
-            hits[count] = (place, found);
-            count += usize::from(some);
-        }
-        for (place, found) in &hits[..count] {
-            let flight = &mut flights[*place];
-            let leaf = Reference(currents[*place]);
-            let Flight { ray, nearest, .. } = &mut *flight;
-            if ANY {
-                if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, ray) {
-                    nearest.block();
-                    flight.end();
+            // Those whose way has ended make room for others.
+            for &place in done {
+                let place = place as usize;
+                let flight = &mut flights[place];
+                let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
+                finish(flight.number, ended);
+                currents[place] = IDLE;
+                if let Some((number, ray)) = waiting.next() {
+                    flight.begin(&ray, number, tree.reach);
+                    currents[place] = tree.root.0;
                 }
-            } else if take_closest::<S, G, FAST>(simd, tree, geometry, leaf, found, ray, nearest) {
-                flight.cull(simd);
             }
-        }
-        for &place in leaves {
-            let place = place as usize;
-            currents[place] = next(simd, tree, &mut flights[place]);
+
+            for &place in nodes {
+                let place = place as usize;
+                let flight = &mut flights[place];
+                if flight.is_full() {
+                    spilled.push(flight.number);
+                    currents[place] = Reference::NOTHING.0;
+                    continue;
+                }
+                let next = flight.visit::<S, ANY>(simd, tree.node(Reference(currents[place])));
+                simd.prefetch(tree.address(next));
+                currents[place] = next.0;
+            }
+
+            // Test all leaves, and then look closer where something may be hit.
+            let mut count = 0;
+            for &place in leaves {
+                let place = place as usize;
+                let flight = &mut flights[place];
+                let leaf = Reference(currents[place]);
+                let found = leaf_hits::<S, G, FAST>(
+                    simd,
+                    tree,
+                    geometry,
+                    leaf,
+                    &flight.ray,
+                    flight.nearest.t_max(),
+                );
+                let some = found.hit | found.doubtful != 0;
+                hits[count] = (place, found);
+                count += usize::from(some);
+            }
+            for (place, found) in &hits[..count] {
+                let flight = &mut flights[*place];
+                let leaf = Reference(currents[*place]);
+                let Flight { ray, nearest, .. } = &mut *flight;
+                if ANY {
+                    if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, ray) {
+                        nearest.block();
+                        flight.end();
+                    }
+                } else if take_closest::<S, G, FAST>(
+                    simd, tree, geometry, leaf, found, ray, nearest,
+                ) {
+                    flight.cull(simd);
+                }
+            }
+            for &place in leaves {
+                let place = place as usize;
+                currents[place] = next(simd, tree, &mut flights[place]);
+            }
         }
     }
 }

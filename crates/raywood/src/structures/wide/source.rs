@@ -36,6 +36,8 @@ pub(super) enum Common {
     Target,
     /// The point is where one of them starts.
     Direction,
+    /// A point that their lines meet in before the rays start.
+    Image,
 }
 
 /// The part of a slice from `start` on, of at most `count` items.

@@ -1,25 +1,22 @@
 //! Making a packet of rays.
 
 use super::frame::Frame;
+use super::kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
+use super::meeting::{Meeting, NEARLY_ONE};
+use super::waiting::Waiters;
 use super::{GROUP, Groups, NONE, Packet, RAYS};
+use crate::Ray;
 use crate::simd::{Float, Simd};
 use crate::structures::wide::source::{Common, Source};
-use crate::{Ray, Vec3};
 
 /// Rays that rise more steeply against the packet's main axis do not come with it.
-const STEEPEST: f32 = 20.0;
+pub(super) const STEEPEST: f32 = 20.0;
 
 /// With fewer rays a packet is not worth while.
-const FEWEST: u32 = 32;
+pub(super) const FEWEST: u32 = 32;
 
 /// Groups of fewer rays on average are brought together.
 const ENOUGH: u32 = 12;
-
-/// Points are taken for one that differ by no more than so many roundings of the coordinates on the way.
-const ROUNDINGS: f32 = 4.0 * f32::EPSILON;
-
-/// Rays that end from here on, and before one, are taken for such that stop a little before the point that they go to.
-const NEARLY_ONE: f32 = 0.99;
 
 /// Rays in the order in which they come.
 pub(super) const NUMBERS: [[u8; GROUP]; GROUP] = {
@@ -32,152 +29,39 @@ pub(super) const NUMBERS: [[u8; GROUP]; GROUP] = {
     numbers
 };
 
-/// Where most rays of a packet meet, judged by two of them or, where these do not agree, by five: whatever one of these is, the others decide.
-struct Meeting {
-    kind: Common,
-    point: Vec3,
-    /// How far a ray may pass by the point, along each axis.
-    offset: f32,
-    /// The direction of one of the rays, seen from the point.
-    direction: Vec3,
-}
-
-/// Of five rays so many decide.
-const MOST: usize = 3;
-
-impl Meeting {
-    /// Where two of the rays say that all meet, if they agree.
-    #[inline(always)]
-    fn of_two<R: Source>(rays: &R, any: bool) -> Option<Self> {
-        let (one, other) = (rays.ray(rays.len() / 2), rays.ray(0));
-        let (kind, point) = match (R::COMMON, rays.point()) {
-            (Some(kind), Some(point)) => (kind, point),
-            _ if one.origin == other.origin => (Common::Origin, one.origin),
-            _ if any && is_parallel(&one, &other) => (Common::Direction, one.origin),
-            _ => (Common::Target, one.at(length(&one))),
-        };
-        let (turn, offset) = match kind {
-            Common::Origin | Common::Direction => (1.0, 0.0),
-            Common::Target => (-1.0, allowance(point, one.origin.abs().max(other.origin.abs()))),
-        };
-        let meet = R::COMMON.is_some()
-            || kind == Common::Origin
-            || kind == Common::Direction && point.is_finite()
-            || any && passed(&other, point) <= offset && point.is_finite();
-        let axis = one.direction.abs().max_axis();
-        let same_way = axis == other.direction.abs().max_axis()
-            && one.direction[axis] * other.direction[axis] > 0.0;
-        let agree = meet && same_way && offset < f32::INFINITY;
-        agree.then_some(Self { kind, point, offset, direction: turn * one.direction })
-    }
-
-    /// Where most of five rays meet.
-    #[cold]
-    #[inline(never)]
-    fn of_five<R: Source>(rays: &R, any: bool) -> Option<Self> {
-        let samples = [2, 0, 4, 1, 3].map(|part| rays.ray(part * (rays.len() - 1) / 4));
-        let (kind, point) = match (R::COMMON, rays.point()) {
-            (Some(kind), Some(point)) => (kind, point),
-            _ => Self::looked_for(&samples, any)?,
-        };
-        let (turn, offset) = match kind {
-            Common::Origin | Common::Direction => (1.0, 0.0),
-            Common::Target => {
-                let origins = samples.iter().map(|ray| ray.origin).filter(|o| o.is_finite());
-                (-1.0, origins.map(|origin| allowance(point, origin)).fold(0.0, f32::max))
-            }
-        };
-
-        // The main axis of most of them, and which way along it; of parallel rays the direction that most of them have.
-        let directions = samples.map(|ray| turn * ray.direction);
-        let way = |direction: &Vec3| {
-            let axis = direction.abs().max_axis();
-            direction.is_finite().then_some((axis, direction[axis] < 0.0))
-        };
-        let ways = directions.each_ref().map(way);
-        let alike = |one: usize, other: usize| match kind {
-            Common::Direction => directions[one] == directions[other],
-            _ => ways[one] == ways[other],
-        };
-        let votes = |place: &usize| (0..ways.len()).filter(|other| alike(*place, *other)).count();
-        let best = (0..ways.len()).filter(|place| ways[*place].is_some()).max_by_key(votes)?;
-        Some(Self { kind, point, offset, direction: directions[best] })
-    }
-
-    /// A point that most of some rays start at or, if `any` hit is looked for, go to; or where one of them starts if most have its direction.
-    fn looked_for(samples: &[Ray; 5], any: bool) -> Option<(Common, Vec3)> {
-        let starting = |point: Vec3| samples.iter().filter(|ray| ray.origin == point).count();
-        let origins = samples.iter().map(|ray| ray.origin);
-        if let Some(point) = origins.into_iter().find(|point| starting(*point) >= MOST) {
-            return Some((Common::Origin, point));
-        }
-        let is_common = |ray: &&Ray| {
-            let parallel = samples.iter().filter(|other| is_parallel(ray, other));
-            ray.origin.is_finite() && parallel.count() >= MOST
-        };
-        if let Some(ray) = samples.iter().filter(|_| any).find(is_common) {
-            return Some((Common::Direction, ray.origin));
-        }
-        let is_target = |ray: &&Ray| {
-            let point = ray.at(length(ray));
-            let most = allowance(point, ray.origin);
-            let close = |ray: &&Ray| passed(ray, point) <= most;
-            point.is_finite() && samples.iter().filter(close).count() >= MOST
-        };
-        let ray = samples.iter().filter(|_| any).find(is_target)?;
-        Some((Common::Target, ray.at(length(ray))))
-    }
-}
-
-/// Whether two rays have the same direction and no end.
-fn is_parallel(one: &Ray, other: &Ray) -> bool {
-    one.direction == other.direction && one.t_max == f32::INFINITY && other.t_max == f32::INFINITY
-}
-
-/// At which distance a ray is at the point that it goes to: where it ends, or where a ray [between](Ray::between) points would end that
-/// stops a little before.
-fn length(ray: &Ray) -> f32 {
-    if (NEARLY_ONE..1.0).contains(&ray.t_max) { 1.0 } else { ray.t_max }
-}
-
-/// How far a ray passes by the point that it goes to.
-fn passed(ray: &Ray, point: Vec3) -> f32 {
-    (ray.at(length(ray)) - point).abs().max_element()
-}
-
-/// How far a ray from `origin` may pass by the point that it goes to by rounding.
-fn allowance(point: Vec3, origin: Vec3) -> f32 {
-    ROUNDINGS * point.abs().max(origin.abs()).max_element()
-}
-
 impl Packet {
-    /// Makes the packet of at most 256 rays. Numbers of rays that do not fit in are appended to `rest`, counted from `first`; if none are left
-    /// there is no packet. Otherwise the answer is what its rays have in common. `reach` is that of the tree, which parallel rays need to know.
+    /// Makes a packet of those that [wait](Self::waiting) of at most 256 rays. These wait no longer then, and the answer is what they have in common. If
+    /// too few have anything in common there is no packet. `reach` is that of the tree, which parallel rays need to know.
     #[inline(always)]
     pub(super) fn gather<S: Simd, R: Source, const ANY: bool>(
         &mut self,
         simd: S,
         rays: &R,
-        rest: &mut Vec<usize>,
-        (first, reach): (usize, f32),
+        reach: f32,
     ) -> Option<Common> {
-        let meeting = (rays.len() >= FEWEST as usize)
-            .then(|| Meeting::of_two(rays, ANY).or_else(|| Meeting::of_five(rays, ANY)))
-            .flatten();
-        let Some(Meeting { kind, point, offset, direction }) = meeting else {
-            rest.extend(first..first + rays.len());
+        let waiting = self.waiting;
+        let waiters = Waiters::new(rays, &waiting);
+        if waiters.count < FEWEST as usize {
             return None;
-        };
+        }
+        let meeting = Meeting::of_two(&waiters, ANY)
+            .or_else(|| Meeting::of_five(&waiters, ANY))
+            .or_else(|| if ANY { None } else { Meeting::in_image(&waiters) });
+        let Meeting { kind, point, offset, direction } = meeting?;
         // Known beforehand wherever it can be: the loop below is made for one kind then.
         let kind = R::COMMON.unwrap_or(kind);
         if ANY && R::COMMON.is_none() && kind == Common::Direction {
-            self.gather_parallel(simd, rays, rest, (point, direction), (first, reach));
-            return self.arrange::<S, true>(simd).then_some(kind);
+            self.gather_parallel(simd, rays, (point, direction), reach);
+            return self.arrange::<S, BlockedParallel>(simd).then_some(kind);
+        }
+        if !ANY && R::COMMON.is_none() && kind == Common::Image {
+            self.gather_image(simd, rays, point, offset, direction);
+            return self.arrange::<S, Reflected>(simd).then_some(kind);
         }
         // Rays with a common end are looked at from there.
         self.frame = Frame::new(point, offset, direction);
         let turned = match kind {
-            Common::Origin | Common::Direction => 1.0,
+            Common::Origin | Common::Direction | Common::Image => 1.0,
             Common::Target => -1.0,
         };
 
@@ -190,14 +74,19 @@ impl Packet {
         let [x_axis, y_axis, z_axis] = self.frame.axes;
         let (mut bounded, mut latest) = (0, zero);
         for group in 0..GROUP {
-            // Sixteen rays, coordinate by coordinate; what is missing behind the last is no ray.
-            let here = rays.len().saturating_sub(group * GROUP).min(GROUP);
+            let wanted = self.waiting.rays[group];
+            self.members[group] = 0;
+            if wanted == 0 {
+                continue;
+            }
+
+            // Sixteen rays, coordinate by coordinate.
             let [ox, oy, oz, start, dx, dy, dz, end] = rays.columns(simd, group * GROUP);
             let d = [dx, dy, dz];
 
             // Which of them pass through the point, and where on their way.
             let (passed, length, from_start) = match kind {
-                Common::Origin | Common::Direction => {
+                Common::Origin | Common::Direction | Common::Image => {
                     let [x, y, z] = [ox - origin[0], oy - origin[1], oz - origin[2]];
                     ([x, y, z], end, zero)
                 }
@@ -215,7 +104,8 @@ impl Packet {
             };
             let z = d[z_axis] * z_turn;
             let (x, y) = (d[x_axis] * turn, d[y_axis] * turn);
-            let members = x.abs().less_or_equal(z * simd.splat16(STEEPEST))
+            let members = wanted
+                & x.abs().less_or_equal(z * simd.splat16(STEEPEST))
                 & y.abs().less_or_equal(z * simd.splat16(STEEPEST))
                 & simd.splat16(Ray::SHORTEST_DIRECTION).less_or_equal(z)
                 & z.less(simd.splat16(1.0 / Ray::SHORTEST_DIRECTION))
@@ -226,10 +116,6 @@ impl Packet {
                 & passed[1].abs().less_or_equal(allowed)
                 & passed[2].abs().less_or_equal(allowed);
             self.members[group] = members;
-            if members.count_ones() as usize != here {
-                let missing = (0..here).filter(|lane| members >> lane & 1 == 0);
-                rest.extend(missing.map(|lane| first + group * GROUP + lane));
-            }
 
             // Their slopes, and how far they reach.
             latest = latest.larger(zero.replaced(members, z * from_start));
@@ -241,7 +127,7 @@ impl Packet {
             self.scales[group] = scale.to_array();
             // Divisions are slow, and here the length is known.
             let limit = match R::COMMON {
-                Some(Common::Origin | Common::Direction) => zero,
+                Some(Common::Origin | Common::Direction | Common::Image) => zero,
                 Some(Common::Target) => scale,
                 None => scale / length,
             };
@@ -253,37 +139,48 @@ impl Packet {
         self.is_bounded = bounded != 0;
         self.start = 1.0 / latest.greatest();
         self.numbers = NUMBERS;
-        self.arrange::<S, false>(simd).then_some(kind)
+        let is_packet = match ANY {
+            true => self.arrange::<S, Blocked>(simd),
+            false => self.arrange::<S, Closest>(simd),
+        };
+        is_packet.then_some(kind)
     }
 
-    /// Brings the rays into an order in which groups are compact, if need be, and tells whether there are any.
+    /// Brings the rays into an order in which groups are compact, if need be, and tells whether there are enough of them.
     #[inline(always)]
-    fn arrange<S: Simd, const PARALLEL: bool>(&mut self, simd: S) -> bool {
-        self.measure::<S, PARALLEL>(simd);
-        let mut scattered = self.scattered(simd);
+    fn arrange<S: Simd, K: Kind>(&mut self, simd: S) -> bool {
         let count = self.members.iter().map(|members| members.count_ones()).sum::<u32>();
+        if count < FEWEST {
+            return false;
+        }
+        self.waiting = self.waiting.without(&self.members);
+        self.measure::<S, K>(simd);
+        let mut scattered = self.scattered(simd);
         let live = self.groups.live;
         if count < live.count_ones() * ENOUGH {
             // Where others come between the rays, as such to another light do, sorting also brings them together in fewer groups.
             scattered = live;
         }
-        let is_sorted = count >= FEWEST && scattered.count_ones() > 1;
+        let is_sorted = scattered.count_ones() > 1;
         self.sorted = if is_sorted { scattered } else { 0 };
         if is_sorted {
-            self.sort(simd, scattered);
-            self.measure::<S, PARALLEL>(simd);
+            self.sort::<S, K>(simd, scattered);
+            self.measure::<S, K>(simd);
         }
-        self.groups.live != 0
+        true
     }
 
     /// Computes what the rays of each group have in common.
     #[inline(always)]
-    fn measure<S: Simd, const PARALLEL: bool>(&mut self, simd: S) {
+    fn measure<S: Simd, K: Kind>(&mut self, simd: S) {
         self.groups = Groups::NONE;
         let above = simd.splat16(f32::INFINITY);
         let below = simd.splat16(f32::NEG_INFINITY);
         let groups = &mut self.groups;
         groups.least = simd.least_of_rows(&self.nearest).to_array();
+        if K::LATE {
+            groups.begin_at(simd, simd.least_of_rows(&self.starts));
+        }
         for axis in 0..2 {
             groups.slopes[axis][0] = simd.least_of_rows(&self.slopes[axis]).to_array();
             groups.slopes[axis][1] = simd.greatest_of_rows(&self.slopes[axis]).to_array();
@@ -300,6 +197,6 @@ impl Packet {
             }
         }
         self.groups.prepare(simd);
-        self.groups.look_again::<S, PARALLEL>(simd);
+        self.groups.look_again::<S, K>(simd);
     }
 }

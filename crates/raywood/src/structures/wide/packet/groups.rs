@@ -1,6 +1,7 @@
 //! The groups of a packet: sixteen times sixteen rays, each group in a rectangle of slopes.
 
 use super::frame::Frame;
+use super::kind::Kind;
 use crate::simd::{Float, Simd};
 
 /// By how much of itself the far end of an interval of depths is lengthened against rounding: every depth is off by five roundings at most.
@@ -28,6 +29,10 @@ pub(super) struct Groups {
     pub(super) least: [f32; 16],
     /// The depth beyond which nothing counts for any ray of the group.
     pub(super) far: [f32; 16],
+    /// The depth before which nothing counts.
+    from: [f32; 16],
+    /// The same for the packet as a whole.
+    whole_from: f32,
     /// Where reciprocals are positive.
     positive: [[u32; 2]; 2],
     /// The same for the packet as a whole: slopes, their reciprocals, the farthest depth that counts.
@@ -48,6 +53,8 @@ impl Groups {
         extents: [[0.0; 16]; 2],
         least: [f32::INFINITY; 16],
         far: [0.0; 16],
+        from: [0.0; 16],
+        whole_from: 0.0,
         positive: [[0; 2]; 2],
         whole: [[f32::INFINITY, f32::NEG_INFINITY]; 2],
         whole_reciprocals: [[0.0; 2]; 2],
@@ -87,17 +94,25 @@ impl Groups {
 
     /// Looks how far the groups still have to look.
     #[inline(always)]
-    pub(super) fn look_again<S: Simd, const PARALLEL: bool>(&mut self, simd: S) {
+    pub(super) fn look_again<S: Simd, K: Kind>(&mut self, simd: S) {
         let least = simd.load16(&self.least);
-        let far = if PARALLEL { simd.splat16(0.0) - least } else { simd.splat16(1.0) / least };
+        let far = if K::PARALLEL { simd.splat16(0.0) - least } else { simd.splat16(1.0) / least };
         self.far = far.to_array();
         self.live &= least.less(simd.splat16(f32::INFINITY));
+    }
+
+    /// Takes the depths at which the groups' rays start.
+    #[inline(always)]
+    pub(super) fn begin_at<S: Simd>(&mut self, simd: S, depths: S::F16) {
+        let from = depths * simd.splat16(1.0 - SLACK);
+        self.from = from.to_array();
+        self.whole_from = from.least();
     }
 
     /// The groups that may meet a box, given by its smallest and largest coordinates in the packet's frame.
     #[inline(always)]
     pub(super) fn meeting<S: Simd>(&self, simd: S, low: [f32; 3], high: [f32; 3]) -> u32 {
-        let mut near = simd.splat16(low[2].max(0.0));
+        let mut near = simd.load16(&self.from).larger(simd.splat16(low[2]));
         let mut far = simd.load16(&self.far).smaller(simd.splat16(high[2]));
         for axis in 0..2 {
             // The group lies beyond the low side where its greatest slope has reached it, and before the high side until its least slope has.
@@ -120,7 +135,7 @@ impl Groups {
         simd: S,
         [low, high]: &[[S::F16; 3]; 2],
     ) -> (u32, S::F16) {
-        let mut near = low[2].larger(simd.splat16(0.0));
+        let mut near = low[2].larger(simd.splat16(self.whole_from));
         let mut far = high[2].smaller(simd.splat16(self.farthest(simd)));
         for axis in 0..2 {
             for (planes, side) in [(low[axis], 1), (high[axis], 0)] {
@@ -139,14 +154,9 @@ impl Groups {
 
     /// The groups for which depths from `near` on still count.
     #[inline(always)]
-    pub(super) fn reaching<S: Simd, const PARALLEL: bool>(
-        &self,
-        simd: S,
-        frame: &Frame,
-        near: f32,
-    ) -> u32 {
+    pub(super) fn reaching<S: Simd, K: Kind>(&self, simd: S, frame: &Frame, near: f32) -> u32 {
         let far = simd.load16(&self.far);
-        let far = match PARALLEL {
+        let far = match K::PARALLEL {
             true => far + simd.splat16(frame.offset),
             false => far * simd.splat16(1.0 + SLACK),
         };

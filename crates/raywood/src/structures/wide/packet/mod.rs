@@ -8,12 +8,16 @@
 mod frame;
 mod gather;
 mod groups;
+mod image;
+mod kind;
 mod leaving;
+mod meeting;
 mod parallel;
 mod sort;
 #[cfg(test)]
 mod tests;
 mod triangles;
+mod waiting;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
@@ -26,8 +30,10 @@ use crate::traverse::nearest::hit as hit_one;
 use crate::{Geometry, Hit, HitColumns, PreparedRay};
 use frame::Frame;
 use groups::Groups;
+use kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
 use leaving::{Leaving, Plane};
 use triangles::{GREATEST_VOLUME, TRIANGLES, Triangles};
+use waiting::Waiting;
 
 /// How many rays a packet has at most.
 pub(super) const RAYS: usize = 256;
@@ -48,6 +54,8 @@ pub(super) struct Packet {
     primitives: [[f32; GROUP]; GROUP],
     /// Distance per depth.
     scales: [[f32; GROUP]; GROUP],
+    /// At which depth each ray starts, where that is not at the common point.
+    starts: [[f32; GROUP]; GROUP],
     groups: Groups,
     frame: Frame,
     /// One over the depth at which the last ray starts to count; infinite for parallel rays.
@@ -56,6 +64,10 @@ pub(super) struct Packet {
     is_bounded: bool,
     /// The groups whose rays are others than in the slice.
     sorted: u32,
+    /// The rays of the slice that no packet has taken.
+    waiting: Waiting,
+    /// Whether there was another packet of the same slice before.
+    is_later: bool,
     /// Which ray of the slice each one is.
     numbers: [[u8; GROUP]; GROUP],
     /// How many triangles each group was tested against.
@@ -93,6 +105,15 @@ const LIKELY_ERROR: f32 = 1.0 / 16.0;
 
 /// From so many rays of a group on they are asked together whether they leave a triangle's plane.
 const SEVERAL: u32 = 4;
+
+/// Sixteen bits.
+const ALL: u32 = 0xffff;
+
+/// By how much of itself a depth, and its share of the start's, may be off but for the tolerance.
+const START_ERROR: f32 = 1.0 / (1 << 22) as f32;
+
+/// Hits nearer to a ray's start than this share of its distance from the common point are looked for from the start.
+const NEAR: f32 = 1.0 / 512.0;
 
 /// Stands for a primitive where none was hit.
 const NONE: u32 = HitColumns::NONE;
@@ -148,12 +169,23 @@ pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    if packet.gather::<S, R, false>(simd, &piece.rays, rest, (piece.first, 0.0)).is_some() {
+    packet.begin(piece.rays.len());
+    while let Some(common) = packet.gather::<S, R, false>(simd, &piece.rays, piece.tree.reach) {
         // While the packet is under way, the place for its hits arrives.
         hits.prefetch(simd);
-        packet.trace::<S, G, R, false, false, FAST>(simd, piece, stack);
-        packet.finish(simd, &piece.rays, hits, rest, piece.first);
+        match common {
+            Common::Image => {
+                packet.trace::<S, G, R, Reflected, FAST>(simd, piece, stack);
+                packet.finish::<S, R, H, Reflected>(simd, &piece.rays, hits, rest, piece.first);
+            }
+            _ => {
+                packet.trace::<S, G, R, Closest, FAST>(simd, piece, stack);
+                packet.finish::<S, R, H, Closest>(simd, &piece.rays, hits, rest, piece.first);
+            }
+        }
+        packet.is_later = true;
     }
+    packet.waiting.append_to(rest, piece.first);
 }
 
 /// Finds out whether anything blocks rays that share their origin, their end or their direction. Appends the numbers of rays that must be traced otherwise to `rest`.
@@ -166,14 +198,18 @@ pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
     rest: &mut Vec<usize>,
 ) {
     let Scratch { packet, stack } = scratch;
-    let reach = piece.tree.reach;
-    if let Some(kind) = packet.gather::<S, R, true>(simd, &piece.rays, rest, (piece.first, reach)) {
-        match kind {
-            Common::Direction => packet.trace::<S, G, R, true, true, FAST>(simd, piece, stack),
-            _ => packet.trace::<S, G, R, true, false, FAST>(simd, piece, stack),
+    packet.begin(piece.rays.len());
+    while let Some(common) = packet.gather::<S, R, true>(simd, &piece.rays, piece.tree.reach) {
+        match common {
+            Common::Direction => {
+                packet.trace::<S, G, R, BlockedParallel, FAST>(simd, piece, stack);
+            }
+            _ => packet.trace::<S, G, R, Blocked, FAST>(simd, piece, stack),
         }
         packet.finish_any(simd, occluded, rest, piece.first);
+        packet.is_later = true;
     }
+    packet.waiting.append_to(rest, piece.first);
 }
 
 impl Packet {
@@ -185,11 +221,14 @@ impl Packet {
             weights: [zeros; 2],
             primitives: zeros,
             scales: zeros,
+            starts: zeros,
             groups: Groups::NONE,
             frame: Frame::new(crate::Vec3::ZERO, 0.0, crate::Vec3::ZERO),
             start: f32::INFINITY,
             is_bounded: false,
             sorted: 0,
+            waiting: Waiting::first(0),
+            is_later: false,
             numbers: [[0; GROUP]; GROUP],
             work: [0.0; GROUP],
             alone: [0; GROUP],
@@ -198,16 +237,16 @@ impl Packet {
         }
     }
 
+    /// Has so many rays wait for being taken into packets.
+    #[inline(always)]
+    fn begin(&mut self, count: usize) {
+        self.waiting = Waiting::first(count);
+        self.is_later = false;
+    }
+
     /// Sends the packet through the tree.
     #[inline(always)]
-    fn trace<
-        S: Simd,
-        G: Geometry,
-        R: Source,
-        const ANY: bool,
-        const PARALLEL: bool,
-        const FAST: bool,
-    >(
+    fn trace<S: Simd, G: Geometry, R: Source, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
         piece: &Piece<'_, G, R>,
@@ -218,13 +257,13 @@ impl Packet {
         }
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
-        let near = if PARALLEL { f32::NEG_INFINITY } else { 0.0 };
+        let near = if K::PARALLEL { f32::NEG_INFINITY } else { 0.0 };
         stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near };
         let mut top = 1;
         while top > 0 {
             top -= 1;
             let Item { reference, groups, near } = stack[top];
-            let groups = groups & self.groups.reaching::<S, PARALLEL>(simd, &self.frame, near);
+            let groups = groups & self.groups.reaching::<S, K>(simd, &self.frame, near);
             if groups == 0 {
                 continue;
             }
@@ -234,26 +273,20 @@ impl Packet {
                 if top > 0 && stack[top - 1].reference.is_leaf() {
                     top -= 1;
                     let Item { reference, groups, near } = stack[top];
-                    let groups =
-                        groups & self.groups.reaching::<S, PARALLEL>(simd, &self.frame, near);
+                    let groups = groups & self.groups.reaching::<S, K>(simd, &self.frame, near);
                     leaves[1] = Leaf { reference, groups };
                 }
-                self.visit_leaves::<S, G, R, ANY, PARALLEL, FAST>(simd, piece, leaves);
+                self.visit_leaves::<S, G, R, K, FAST>(simd, piece, leaves);
             } else {
-                top += self.enter_node::<S, PARALLEL>(
-                    simd,
-                    piece.tree,
-                    reference,
-                    groups,
-                    &mut stack[top..],
-                );
+                top +=
+                    self.enter_node::<S, K>(simd, piece.tree, reference, groups, &mut stack[top..]);
             }
         }
     }
 
     /// Puts the children of a node that some group meets onto the stack, the nearest last, and tells how many these are.
     #[inline(always)]
-    fn enter_node<S: Simd, const PARALLEL: bool>(
+    fn enter_node<S: Simd, K: Kind>(
         &self,
         simd: S,
         tree: &WideBvh,
@@ -264,7 +297,7 @@ impl Packet {
         // The children that the packet as a whole meets.
         let node = tree.node(reference);
         let boxes = self.frame.boxes(simd, &node.planes);
-        let (met, near) = match PARALLEL {
+        let (met, near) = match K::PARALLEL {
             true => self.groups.met_by_any_parallel(simd, &self.frame, &boxes),
             false => self.groups.met_by_any(simd, &boxes),
         };
@@ -281,7 +314,7 @@ impl Packet {
             simd.prefetch(tree.address(Reference(node.children[lane])));
             let low = [low[0][lane], low[1][lane], low[2][lane]];
             let high = [high[0][lane], high[1][lane], high[2][lane]];
-            let met = match PARALLEL {
+            let met = match K::PARALLEL {
                 true => self.groups.meeting_parallel(simd, &self.frame, low, high),
                 false => self.groups.meeting(simd, low, high),
             };
@@ -309,14 +342,7 @@ impl Packet {
 
     /// Tests the primitives of two leaves against the rays of some groups each.
     #[inline(always)]
-    fn visit_leaves<
-        S: Simd,
-        G: Geometry,
-        R: Source,
-        const ANY: bool,
-        const PARALLEL: bool,
-        const FAST: bool,
-    >(
+    fn visit_leaves<S: Simd, G: Geometry, R: Source, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
         piece: &Piece<'_, G, R>,
@@ -333,9 +359,9 @@ impl Packet {
                 lanes |= (leaf.reference.lanes() & !here) << (place * LANES);
             }
         }
-        let tolerance = if ANY { LARGE_TOLERANCE } else { TOLERANCE };
+        let tolerance = if K::ANY { LARGE_TOLERANCE } else { TOLERANCE };
         let (frame, all) = (&self.frame, &self.groups);
-        let triangles = match PARALLEL {
+        let triangles = match K::PARALLEL {
             true => Triangles::parallel(simd, blocks, lanes, frame, all),
             false => Triangles::new(simd, blocks, lanes, frame, all, tolerance),
         };
@@ -347,8 +373,8 @@ impl Packet {
         while left != 0 {
             let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
-            let meeting = triangles.groups::<S, PARALLEL>(simd, lane, &self.groups)
-                & leaves[lane / LANES].groups;
+            let meeting =
+                triangles.groups::<S, K>(simd, lane, &self.groups) & leaves[lane / LANES].groups;
             work = work.replaced(meeting, work + simd.splat16(1.0));
             count += simd.push_chosen(meeting, &PAIRS[lane], &mut self.pairs, 1 + count).0;
         }
@@ -357,12 +383,11 @@ impl Packet {
             let pair = self.pairs[place] as usize;
             let (lane, group) = (pair / GROUP % TRIANGLES, pair % GROUP);
             let primitive = f32::from_bits(blocks[lane / LANES].primitives[lane % LANES]);
-            let (hit, doubtful) =
-                self.test::<S, ANY, PARALLEL, FAST>(simd, &triangles, lane, group, primitive);
+            let (hit, doubtful) = self.test::<S, K, FAST>(simd, &triangles, lane, group, primitive);
             touched |= u32::from(hit | doubtful != 0) << group;
             if doubtful != 0 {
                 let leaf = leaves[lane / LANES].reference;
-                self.settle::<G, R, ANY>(piece, leaf, lane % LANES, group, doubtful);
+                self.settle::<G, R, K>(piece, leaf, lane % LANES, group, doubtful);
             }
         }
         let mut left = if FAST { others } else { others | triangles.possible & triangles.unknown };
@@ -373,10 +398,10 @@ impl Packet {
             touched |= groups;
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
                 let mut members = self.members[group];
-                if PARALLEL && others >> lane & 1 == 0 {
+                if K::PARALLEL && others >> lane & 1 == 0 {
                     members &= triangles.passing(simd, lane, &self.slopes, group);
                 }
-                self.settle::<G, R, ANY>(piece, reference, lane % LANES, group, members);
+                self.settle::<G, R, K>(piece, reference, lane % LANES, group, members);
             }
         }
 
@@ -387,7 +412,7 @@ impl Packet {
             left &= left - 1;
             self.groups.least[group] = simd.load16(&self.nearest[group]).least();
         }
-        self.groups.look_again::<S, PARALLEL>(simd);
+        self.groups.look_again::<S, K>(simd);
 
         // Give up groups that take more work than their rays would take one by one.
         self.work = work.to_array();
@@ -403,7 +428,7 @@ impl Packet {
 
     /// Tests a triangle against the rays of a group and takes what is certainly hit. Returns the rays for which that is not certain.
     #[inline(always)]
-    fn test<S: Simd, const ANY: bool, const PARALLEL: bool, const FAST: bool>(
+    fn test<S: Simd, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
         triangles: &Triangles,
@@ -419,21 +444,21 @@ impl Packet {
         let depth = triangles.function(simd, 3, lane, x, y);
         let least = edge_a.smaller(edge_b).smaller(edge_c);
         if FAST {
-            return self.take_fast::<S, ANY>(
+            return self.take_fast::<S, K>(
                 simd,
                 least,
                 depth,
                 [edge_b, edge_c],
                 (group, primitive),
-                triangles.errors[lane],
+                (triangles.errors[lane], triangles.tolerances[lane]),
             );
         }
         let (error, certainly) = (triangles.errors[lane], triangles.certain[lane]);
         let nearest = simd.load16(&self.nearest[group]);
         let tolerance = simd.splat16(triangles.tolerances[lane]);
-        let error_of_depth = if PARALLEL { tolerance } else { depth * tolerance };
+        let error_of_depth = if K::PARALLEL { tolerance } else { depth * tolerance };
         let more = depth + error_of_depth;
-        if ANY {
+        if K::ANY {
             let less = depth - error_of_depth;
             let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
             let certain = simd.splat16(certainly).less(least)
@@ -445,8 +470,11 @@ impl Packet {
             return (hit, possible & !certain);
         }
         let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
-        let doubtful = possible & !simd.splat16(certainly).less(least);
-        let hit = possible & !doubtful;
+        let (late, certainly_late) =
+            self.behind_start::<S, K>(simd, depth, triangles.tolerances[lane], group);
+        let possible = possible & late;
+        let hit = possible & simd.splat16(certainly).less(least) & certainly_late;
+        let doubtful = possible & !hit;
 
         self.take(simd, hit, depth, [edge_b, edge_c], group, primitive);
         (hit, doubtful)
@@ -454,17 +482,17 @@ impl Packet {
 
     /// Takes what is hit as far as rounding allows to tell.
     #[inline(always)]
-    fn take_fast<S: Simd, const ANY: bool>(
+    fn take_fast<S: Simd, K: Kind>(
         &mut self,
         simd: S,
         least: S::F16,
         depth: S::F16,
         weights: [S::F16; 2],
         (group, primitive): (usize, f32),
-        error: f32,
+        (error, tolerance): (f32, f32),
     ) -> (u32, u32) {
         let nearest = simd.load16(&self.nearest[group]);
-        if ANY {
+        if K::ANY {
             // Seen from the light triangles are small, and at silhouettes rounding tells by some millionths wrongly which rays are in shadow.
             let likely = simd.splat16(error * LIKELY_ERROR);
             let near_edge = simd.splat16(0.0) - likely;
@@ -475,9 +503,30 @@ impl Packet {
             self.nearest[group] = nearest.replaced(hit, blocked).to_array();
             return (hit, possible & !hit);
         }
-        let hit = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
+        let possible = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
+        let (late, certainly_late) = self.behind_start::<S, K>(simd, depth, tolerance, group);
+        let hit = possible & certainly_late;
         self.take(simd, hit, depth, weights, group, primitive);
-        (hit, 0)
+        (hit, possible & late & !hit)
+    }
+
+    /// Where one over a `depth` is that of a point behind the ray's start, as far as that can be told: perhaps, and certainly and so far behind that the distance from there is known well.
+    #[inline(always)]
+    fn behind_start<S: Simd, K: Kind>(
+        &self,
+        simd: S,
+        depth: S::F16,
+        tolerance: f32,
+        group: usize,
+    ) -> (u32, u32) {
+        if !K::LATE {
+            return (ALL, ALL);
+        }
+        // One at the start, and the less the farther away.
+        let share = depth * simd.load16(&self.starts[group]);
+        let error = tolerance + START_ERROR;
+        let perhaps = share.less_or_equal(simd.splat16(1.0 + error));
+        (perhaps, share.less_or_equal(simd.splat16(1.0 - error / TOLERANCE)))
     }
 
     /// Takes hits that are nearer than what the rays have.
@@ -507,7 +556,7 @@ impl Packet {
     /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
     #[cold]
     #[inline(never)]
-    fn settle<G: Geometry, R: Source, const ANY: bool>(
+    fn settle<G: Geometry, R: Source, K: Kind>(
         &mut self,
         piece: &Piece<'_, G, R>,
         leaf: Reference,
@@ -518,7 +567,7 @@ impl Packet {
         let block = piece.tree.block(leaf);
         let is_triangle =
             !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
-        let plane = (ANY && is_triangle).then(|| Plane::of(block.corners(lane)));
+        let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
         let mut doubtful = doubtful;
         let plane = match plane {
             Some(plane) if doubtful.count_ones() >= SEVERAL => {
@@ -547,12 +596,16 @@ impl Packet {
             };
             let Some(hit) = hit else { continue };
             let nearest = &mut self.nearest[group][place];
-            if ANY {
+            if K::ANY {
                 *nearest = f32::INFINITY;
                 continue;
             }
-            let depth = self.scales[group][place] / hit.t.abs();
-            if depth > GREATEST_VOLUME {
+            let (scale, start) = (self.scales[group][place], self.starts[group][place]);
+            let (depth, near) = match K::LATE {
+                true => (1.0 / (start + hit.t.abs() / scale), hit.t.abs() < start * scale * NEAR),
+                false => (scale / hit.t.abs(), false),
+            };
+            if depth > GREATEST_VOLUME || near {
                 // At the origin itself: nothing is nearer, and one over the depth cannot tell how near it is.
                 self.alone[group] |= 1 << place;
                 *nearest = f32::INFINITY;
@@ -567,7 +620,7 @@ impl Packet {
 
     /// Writes what was found.
     #[inline(always)]
-    fn finish<S: Simd, R: Source, H: Sink>(
+    fn finish<S: Simd, R: Source, H: Sink, K: Kind>(
         &self,
         simd: S,
         rays: &R,
@@ -577,16 +630,25 @@ impl Packet {
     ) {
         let (zero, one) = (simd.splat16(0.0), simd.splat16(1.0));
         for group in 0..rays.len().div_ceil(GROUP) {
+            let members = self.members[group];
+            if members == 0 {
+                continue;
+            }
             let nearest = simd.load16(&self.nearest[group]);
             let depth = one / nearest;
+            let from_start = match K::LATE {
+                true => depth - simd.load16(&self.starts[group]),
+                false => depth,
+            };
             let found = SixteenHits {
-                t: depth * simd.load16(&self.scales[group]),
+                t: from_start * simd.load16(&self.scales[group]),
                 u: depth * simd.load16(&self.weights[0][group]),
                 v: depth * simd.load16(&self.weights[1][group]),
                 primitives: self.primitives[group],
                 hit: zero.less(nearest),
             };
-            if self.sorted >> group & 1 == 1 || self.is_bounded {
+            let is_sorted = self.sorted >> group & 1 == 1;
+            if is_sorted || self.is_bounded || self.is_later && members != ALL {
                 let numbers = [found.t.to_array(), found.u.to_array(), found.v.to_array()];
                 self.finish_apart(rays, group, numbers, hits, (rest, first));
             } else {
@@ -611,7 +673,7 @@ impl Packet {
     ) {
         for lane in 0..GROUP {
             let number = usize::from(self.numbers[group][lane]);
-            if number >= rays.len() {
+            if self.members[group] >> lane & 1 == 0 {
                 continue;
             }
             let primitive = self.primitives[group][lane].to_bits();
@@ -636,15 +698,19 @@ impl Packet {
         let blocked = simd.splat16(f32::INFINITY);
         for group in 0..occluded.len().div_ceil(GROUP) {
             let found = blocked.less_or_equal(simd.load16(&self.nearest[group]));
-            let found = found & self.members[group];
-            let is_sorted = self.sorted >> group & 1 == 1;
+            let members = self.members[group];
+            if members == 0 {
+                continue;
+            }
+            let found = found & members;
+            let is_apart = self.sorted >> group & 1 == 1 || self.is_later && members != ALL;
             let answers = occluded[group * GROUP..].first_chunk_mut::<GROUP>();
-            if let (false, Some(answers)) = (is_sorted, answers) {
+            if let (false, Some(answers)) = (is_apart, answers) {
                 *answers = truths(found);
             } else {
                 for (lane, number) in self.numbers[group].iter().enumerate() {
-                    if let Some(answer) = occluded.get_mut(usize::from(*number)) {
-                        *answer = found >> lane & 1 == 1;
+                    if members >> lane & 1 == 1 {
+                        occluded[usize::from(*number)] = found >> lane & 1 == 1;
                     }
                 }
             }

@@ -37,9 +37,8 @@ impl Packet {
         &mut self,
         simd: S,
         rays: &R,
-        rest: &mut Vec<usize>,
         (origin, direction): (Vec3, Vec3),
-        (first, reach): (usize, f32),
+        reach: f32,
     ) {
         // They are looked at from where they go to.
         self.frame = Frame::new(origin, 0.0, -direction);
@@ -54,7 +53,11 @@ impl Packet {
         let [shear_x, shear_y] = [simd.splat16(shear[0]), simd.splat16(shear[1])];
         let mut farthest = zero;
         for group in 0..GROUP {
-            let here = rays.len().saturating_sub(group * GROUP).min(GROUP);
+            let wanted = self.waiting.rays[group];
+            self.members[group] = 0;
+            if wanted == 0 {
+                continue;
+            }
             let [ox, oy, oz, start, dx, dy, dz, end] = rays.columns(simd, group * GROUP);
             let (from, d) = ([ox, oy, oz], [dx, dy, dz]);
             let from = |axis: usize| from[axis] - simd.splat16(origin[axis]);
@@ -66,7 +69,8 @@ impl Packet {
                 d[axis].less_or_equal(all) & all.less_or_equal(d[axis])
             };
             let members = if is_direction {
-                same(0)
+                wanted
+                    & same(0)
                     & same(1)
                     & same(2)
                     & never.less_or_equal(end)
@@ -79,10 +83,6 @@ impl Packet {
                 0
             };
             self.members[group] = members;
-            if members.count_ones() as usize != here {
-                let missing = (0..here).filter(|lane| members >> lane & 1 == 0);
-                rest.extend(missing.map(|lane| first + group * GROUP + lane));
-            }
             farthest = farthest.larger(zero.replaced(members, size));
             self.slopes[0][group] = zero.replaced(members, x).to_array();
             self.slopes[1][group] = zero.replaced(members, y).to_array();

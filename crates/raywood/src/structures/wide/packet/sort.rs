@@ -3,6 +3,7 @@
 //! Rays to a light come in the order of the pixels that they belong to; where a picture has depth edges a group's rays are far apart as seen from the
 //! light. One such group meets more boxes than all others together.
 
+use super::kind::Kind;
 use super::{GROUP, Packet};
 use crate::simd::{Float, Simd};
 
@@ -48,7 +49,7 @@ impl Packet {
 
     /// Sorts the rays of some groups by the cells of a grid over the packet, in Morton's order; those that are not in the packet come last.
     #[inline(always)]
-    pub(super) fn sort<S: Simd>(&mut self, simd: S, groups: u32) {
+    pub(super) fn sort<S: Simd, K: Kind>(&mut self, simd: S, groups: u32) {
         // Each ray's cell.
         let [x, y] = self.groups.whole;
         let mut sorted = [0u8; GROUP];
@@ -88,6 +89,7 @@ impl Packet {
 
         // Bring everything into the new order.
         let (slopes, nearest, scales) = (self.slopes, self.nearest, self.scales);
+        let starts_of_rays = K::LATE.then_some(self.starts);
         for lane in 0..GROUP {
             for (cells, &group) in cells.iter().zip(sorted) {
                 let start = &mut starts[usize::from(cells[lane])];
@@ -101,6 +103,9 @@ impl Packet {
                 }
                 self.nearest[to][place] = nearest[from][lane];
                 self.scales[to][place] = scales[from][lane];
+                if let Some(starts) = &starts_of_rays {
+                    self.starts[to][place] = starts[from][lane];
+                }
             }
         }
         for (number, &group) in sorted.iter().enumerate() {

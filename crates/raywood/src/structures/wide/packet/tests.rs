@@ -15,12 +15,15 @@ impl Kernel for Gather<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let (mut packet, mut rest) = (Packet::empty(), Vec::new());
+        let mut packet = Packet::empty();
+        packet.begin(self.rays.len());
         if self.any {
-            packet.gather::<S, &[Ray], true>(simd, &self.rays, &mut rest, (0, 10.0));
+            packet.gather::<S, &[Ray], true>(simd, &self.rays, 10.0);
         } else {
-            packet.gather::<S, &[Ray], false>(simd, &self.rays, &mut rest, (0, 10.0));
+            packet.gather::<S, &[Ray], false>(simd, &self.rays, 10.0);
         }
+        let mut rest = Vec::new();
+        packet.waiting.append_to(&mut rest, 0);
         (rest, packet.groups.live, packet.groups.whole)
     }
 }
@@ -45,6 +48,59 @@ fn parallel_rays() -> Vec<Ray> {
     camera_rays().iter().map(|ray| Ray::new(ray.at(5.0), direction)).collect()
 }
 
+/// And those of a pinhole behind a mirror, from where they leave it.
+fn reflected_rays() -> Vec<Ray> {
+    let from_mirror = |ray: &Ray| Ray::new(ray.at(5.0 / ray.direction.z), ray.direction);
+    camera_rays().iter().map(from_mirror).collect()
+}
+
+/// How many rays of a piece no packet takes, however often one is made.
+struct GatherAll<'a> {
+    rays: &'a [Ray],
+    any: bool,
+}
+
+impl Kernel for GatherAll<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> u32 {
+        let mut packet = Packet::empty();
+        packet.begin(self.rays.len());
+        while match self.any {
+            true => packet.gather::<S, &[Ray], true>(simd, &self.rays, 10.0).is_some(),
+            false => packet.gather::<S, &[Ray], false>(simd, &self.rays, 10.0).is_some(),
+        } {}
+        packet.waiting.count()
+    }
+}
+
+#[test]
+fn rays_of_several_packets_in_turn_all_find_theirs() {
+    let lights = [Vec3::new(1.0, 2.0, 3.0), Vec3::new(-3.0, 2.0, 3.0), Vec3::new(1.0, 9.0, -3.0)];
+    let to_lights: Vec<_> = camera_rays()
+        .iter()
+        .enumerate()
+        .map(|(number, ray)| Ray::between(ray.at(5.0), lights[number % 3]))
+        .collect();
+    let parallel = parallel_rays();
+    let mut with_sun = to_lights.clone();
+    (0..RAYS).step_by(4).for_each(|number| with_sun[number] = parallel[number]);
+    let from_eyes: Vec<_> = camera_rays()
+        .iter()
+        .enumerate()
+        .map(|(number, ray)| Ray { origin: ray.origin + Vec3::splat((number / 64) as f32), ..*ray })
+        .collect();
+    // Three facets of a mirror, with an image each.
+    let mut facets = reflected_rays();
+    facets[100..].iter_mut().for_each(|ray| ray.origin.x += 0.3);
+    facets[180..].iter_mut().for_each(|ray| ray.direction.y += 0.4);
+    for (rays, any) in [(to_lights, true), (with_sun, true), (from_eyes, false), (facets, false)] {
+        let left = dispatch_on(SimdLevel::active(), GatherAll { rays: &rays, any });
+        assert!(left < 32, "{left} rays are left: {:?}", rays[0]);
+    }
+}
+
 #[test]
 fn an_unusual_ray_leaves_the_others_in_their_packet() {
     let levels = SimdLevel::ALL.iter().copied().filter(|level| level.is_available());
@@ -54,6 +110,7 @@ fn an_unusual_ray_leaves_the_others_in_their_packet() {
             (true, camera_rays()),
             (true, shadow_rays()),
             (true, parallel_rays()),
+            (false, reflected_rays()),
         ] {
             let is_parallel = usual[0].direction == usual[1].direction;
             let gather = |rays: &[Ray]| dispatch_on(level, Gather { rays, any });

@@ -5,6 +5,7 @@
 
 use super::frame::Frame;
 use super::groups::Groups;
+use super::kind::Kind;
 use crate::geometry::{LANES, TriangleBlock};
 use crate::simd::{Float, Simd};
 
@@ -194,17 +195,12 @@ impl Triangles {
     ///
     /// The greatest values are off by less than half the error of an edge function, and by less than the tolerance of a depth.
     #[inline(always)]
-    pub(super) fn groups<S: Simd, const PARALLEL: bool>(
-        &self,
-        simd: S,
-        lane: usize,
-        groups: &Groups,
-    ) -> u32 {
+    pub(super) fn groups<S: Simd, K: Kind>(&self, simd: S, lane: usize, groups: &Groups) -> u32 {
         let least = self.greatest(simd, 0, lane, groups);
         let least = self.greatest(simd, 1, lane, groups).smaller(least);
         let least = self.greatest(simd, 2, lane, groups).smaller(least);
         let nearer = self.greatest(simd, 3, lane, groups);
-        let nearer = match PARALLEL {
+        let nearer = match K::PARALLEL {
             true => nearer + simd.splat16(3.0 * self.tolerances[lane]),
             false => nearer * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0)),
         };
