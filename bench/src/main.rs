@@ -2,11 +2,13 @@
 //! use it, `BIAS.md` what not to conclude from it.
 
 mod answers;
+mod build;
 mod commands;
 mod embree;
 mod failure;
 mod machine;
 mod measure;
+mod memory;
 mod peers;
 mod pinhole;
 mod pixel_order;

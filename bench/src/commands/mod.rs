@@ -1,9 +1,15 @@
 //! The subcommands, one per file. To add one, write its file and name it here.
 
+mod build;
+mod names;
+mod output;
+
+mod scene_args;
 mod table;
 mod trace;
 
 use clap::Subcommand;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::failure::Failure;
 
@@ -11,6 +17,7 @@ use crate::failure::Failure;
 #[derive(Subcommand)]
 pub(crate) enum Command {
     Trace(Box<trace::Args>),
+    Build(Box<build::Args>),
     Table(table::Args),
 }
 
@@ -19,7 +26,18 @@ impl Command {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Trace(args) => trace::run(args),
+            Self::Build(args) => build::run(args),
             Self::Table(args) => table::run(args),
         }
     }
+}
+
+/// A pool of threads for each number of them.
+fn pools(threads: &[u16]) -> Result<Vec<ThreadPool>, Failure> {
+    let pool = |&threads: &u16| ThreadPoolBuilder::new().num_threads(threads.into()).build();
+    threads
+        .iter()
+        .map(pool)
+        .collect::<Result<_, _>>()
+        .map_err(|error| Failure::while_running(format!("cannot start the threads: {error}")))
 }

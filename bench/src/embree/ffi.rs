@@ -1,4 +1,4 @@
-//! The binding to Embree 4 by hand, the only unsafe code of the benchmark. Structures and constants are those of Embree's
+//! The binding to Embree 4 by hand; beside it only `memory.rs` has unsafe code. Structures and constants are those of Embree's
 //! `rtcore_*.h`, as release builds have them: one level of instances.
 #![allow(unsafe_code)]
 
@@ -7,8 +7,11 @@ use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_void};
 use std::mem::offset_of;
 use std::path::Path;
 use std::ptr::{NonNull, null, null_mut};
+use std::sync::atomic::{AtomicIsize, Ordering};
 
-use raywood::{Ray, TriangleMesh};
+use raywood::{Ray, TriangleMesh, Vec3};
+
+use crate::memory::Memory;
 
 /// How many rays a packet holds.
 pub(crate) const LANES: usize = 16;
@@ -18,7 +21,6 @@ const BUFFER_TYPE_INDEX: c_int = 0;
 const BUFFER_TYPE_VERTEX: c_int = 1;
 const FORMAT_UINT3: c_int = 0x5003;
 const FORMAT_FLOAT3: c_int = 0x9003;
-const BUILD_QUALITY_HIGH: c_int = 2;
 const SCENE_FLAG_ROBUST: c_int = 1 << 2;
 const RAY_QUERY_FLAG_COHERENT: c_int = 1 << 16;
 const FEATURE_FLAG_ALL: c_uint = u32::MAX;
@@ -45,10 +47,32 @@ struct Functions {
         unsafe extern "C" fn(Handle, c_int, c_uint, c_int, usize, usize) -> *mut c_void,
     commit_geometry: unsafe extern "C" fn(Handle),
     attach_geometry: unsafe extern "C" fn(Handle, Handle) -> c_uint,
+    set_shared_geometry_buffer:
+        unsafe extern "C" fn(Handle, c_int, c_uint, c_int, *const c_void, usize, usize, usize),
+    set_geometry_build_quality: unsafe extern "C" fn(Handle, c_int),
+    set_memory_monitor: unsafe extern "C" fn(Handle, Monitor, *const Held),
     intersect1: unsafe extern "C" fn(Handle, *mut Single, *mut Arguments),
     occluded1: unsafe extern "C" fn(Handle, *mut Single, *mut Arguments),
     intersect16: unsafe extern "C" fn(*const [c_int; LANES], Handle, *mut Lanes, *mut Arguments),
     occluded16: unsafe extern "C" fn(*const [c_int; LANES], Handle, *mut Lanes, *mut Arguments),
+}
+
+/// Called before or after memory is taken or given back, from any thread; refuses it by returning false.
+type Monitor = unsafe extern "C" fn(*const Held, isize, bool) -> bool;
+
+/// The memory that a device holds, in bytes.
+#[derive(Default)]
+struct Held {
+    now: AtomicIsize,
+    most: AtomicIsize,
+}
+
+unsafe extern "C" fn count(held: *const Held, bytes: isize, _after: bool) -> bool {
+    // SAFETY: it is the `Held` of the library that owns the device, which it outlives.
+    let held = unsafe { &*held };
+    let now = held.now.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    held.most.fetch_max(now, Ordering::Relaxed);
+    true
 }
 
 /// Embree and a device of it.
@@ -56,6 +80,7 @@ pub(crate) struct Library {
     device: NonNull<c_void>,
     functions: Functions,
     name: String,
+    held: Box<Held>,
     /// Last, so that the functions are there until all else is gone.
     _code: libloading::Library,
 }
@@ -103,6 +128,9 @@ impl Library {
             set_new_geometry_buffer: function!("rtcSetNewGeometryBuffer"),
             commit_geometry: function!("rtcCommitGeometry"),
             attach_geometry: function!("rtcAttachGeometry"),
+            set_shared_geometry_buffer: function!("rtcSetSharedGeometryBuffer"),
+            set_geometry_build_quality: function!("rtcSetGeometryBuildQuality"),
+            set_memory_monitor: function!("rtcSetDeviceMemoryMonitorFunction"),
             intersect1: function!("rtcIntersect1"),
             occluded1: function!("rtcOccluded1"),
             intersect16: function!("rtcIntersect16"),
@@ -113,7 +141,10 @@ impl Library {
         let version =
             unsafe { (functions.device_property)(device.as_ptr(), DEVICE_PROPERTY_VERSION) };
         let name = format!("{}.{}.{}", version / 10_000, version / 100 % 100, version % 100);
-        let library = Self { device, functions, name, _code: code };
+        let held = Box::<Held>::default();
+        // SAFETY: the device lives; what it is given lives in a box of its own until after the device.
+        unsafe { (functions.set_memory_monitor)(device.as_ptr(), count, &raw const *held) };
+        let library = Self { device, functions, name, held, _code: code };
         // Version 3 has the same names for functions that take other arguments.
         if version / 10_000 != 4 {
             return Err(complain(&format_args!("is Embree {}, expected 4", library.name)));
@@ -124,6 +155,17 @@ impl Library {
     /// Its version, as in `4.4.0`.
     pub(crate) fn version(&self) -> &str {
         &self.name
+    }
+
+    /// The memory that the device takes while `f` runs, as it tells its monitor, and the result. No other thread may use the device meanwhile.
+    pub(crate) fn watch<T>(&self, f: impl FnOnce() -> T) -> (Memory, T) {
+        let before = self.held.now.load(Ordering::Relaxed);
+        self.held.most.store(before, Ordering::Relaxed);
+        let result = f();
+        let since = |bytes: &AtomicIsize| bytes.load(Ordering::Relaxed) - before;
+        let [bytes, peak_bytes] =
+            [&self.held.now, &self.held.most].map(|b| usize::try_from(since(b)).unwrap_or(0));
+        (Memory { bytes, peak_bytes }, result)
     }
 
     /// The first error since it was last asked for.
@@ -159,11 +201,43 @@ pub(crate) enum Robustness {
     Robust,
 }
 
+/// How much work goes into a tree, for a scene and its geometry alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quality {
+    /// By Morton codes.
+    Low = 0,
+    /// By binned SAH.
+    Medium = 1,
+    /// By binned SAH with spatial splits.
+    High = 2,
+}
+
+/// Triangles as Embree can read them where they lie: their vertices followed by room to read 16 bytes at any of them.
+pub(crate) struct SharedMesh {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl SharedMesh {
+    /// Copies a mesh.
+    pub(crate) fn new(mesh: &TriangleMesh) -> Self {
+        let mut positions = Vec::with_capacity(mesh.positions().len() + 1);
+        positions.extend_from_slice(mesh.positions());
+        positions.push(Vec3::ZERO);
+        Self { positions, triangles: mesh.triangles().to_vec() }
+    }
+}
+
 /// Whether rays are traced with the flag COHERENT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coherence {
     Coherent,
     Incoherent,
+}
+
+/// What Embree made, if it did.
+fn made(handle: Handle) -> Result<NonNull<c_void>, String> {
+    NonNull::new(handle).ok_or_else(|| "Embree is out of memory".to_owned())
 }
 
 /// A mesh with Embree's tree over it.
@@ -173,7 +247,7 @@ pub(crate) struct Scene<'a> {
     handle: NonNull<c_void>,
 }
 
-// SAFETY: Embree's manual: any number of threads may trace in a committed scene, and nothing changes it after `build`.
+// SAFETY: Embree's manual: any number of threads may trace in a committed scene, and nothing changes it after `build` or `commit`.
 unsafe impl Sync for Scene<'_> {}
 
 impl<'a> Scene<'a> {
@@ -188,42 +262,109 @@ impl<'a> Scene<'a> {
         robustness: Robustness,
     ) -> Result<Self, String> {
         let f = &library.functions;
-        let device = library.device.as_ptr();
-        let made = |handle: Handle| {
-            NonNull::new(handle).ok_or_else(|| "Embree is out of memory".to_owned())
-        };
+        let scene = Self::empty(library, robustness, Quality::High)?;
+        scene.add_geometry(None, |geometry| {
+            let buffer = |kind, format, items: usize| {
+                // SAFETY: the geometry lives; items of three four-byte numbers are 12 bytes apart.
+                made(unsafe { (f.set_new_geometry_buffer)(geometry, kind, 0, format, 12, items) })
+            };
+            let (positions, triangles) = (mesh.positions(), mesh.triangles());
+            let vertices = buffer(BUFFER_TYPE_VERTEX, FORMAT_FLOAT3, positions.len())?.cast();
+            let indices = buffer(BUFFER_TYPE_INDEX, FORMAT_UINT3, triangles.len())?.cast();
+            // SAFETY: Embree's buffers are as many items of 12 bytes long as the slices, are aligned for numbers of four bytes and overlap nothing;
+            // `Vec3` is three consecutive `f32`.
+            unsafe {
+                positions.as_ptr().copy_to_nonoverlapping(vertices.as_ptr(), positions.len());
+                triangles.as_ptr().copy_to_nonoverlapping(indices.as_ptr(), triangles.len());
+            }
+            Ok(())
+        })?;
+        scene.commit()?;
+        Ok(scene)
+    }
 
-        // SAFETY: the device lives; the scene is released in `drop`.
-        let handle = made(unsafe { (f.new_scene)(device) })?;
-        let scene = Self { library, robustness, handle };
-        // SAFETY: the device lives; the geometry is released below, or leaks when memory is out.
-        let geometry = made(unsafe { (f.new_geometry)(device, GEOMETRY_TYPE_TRIANGLE) })?.as_ptr();
-        let buffer = |kind, format, items: usize| {
-            // SAFETY: the geometry lives; items of three four-byte numbers are 12 bytes apart.
-            made(unsafe { (f.set_new_geometry_buffer)(geometry, kind, 0, format, 12, items) })
-        };
-        let (positions, triangles) = (mesh.positions(), mesh.triangles());
-        let vertices = buffer(BUFFER_TYPE_VERTEX, FORMAT_FLOAT3, positions.len())?;
-        let indices = buffer(BUFFER_TYPE_INDEX, FORMAT_UINT3, triangles.len())?;
-        // SAFETY: Embree's buffers are as many items of 12 bytes long as the slices, are aligned for numbers of four bytes and overlap nothing;
-        // `Vec3` is three consecutive `f32`.
-        unsafe {
-            positions.as_ptr().copy_to_nonoverlapping(vertices.as_ptr().cast(), positions.len());
-            triangles.as_ptr().copy_to_nonoverlapping(indices.as_ptr().cast(), triangles.len());
-        }
-        const { assert!(size_of::<raywood::Vec3>() == 12) };
-        // SAFETY: geometry and scene live, and the scene keeps the geometry.
-        unsafe {
-            (f.commit_geometry)(geometry);
-            (f.attach_geometry)(scene.handle.as_ptr(), geometry);
-            (f.release_geometry)(geometry);
-            let flags = if robustness == Robustness::Robust { SCENE_FLAG_ROBUST } else { 0 };
-            (f.set_scene_flags)(scene.handle.as_ptr(), flags);
-            (f.set_scene_build_quality)(scene.handle.as_ptr(), BUILD_QUALITY_HIGH);
-            (f.commit_scene)(scene.handle.as_ptr());
-        }
+    /// A scene that shares a mesh with the caller and has no tree yet: it is not to be traced before [`commit`](Self::commit).
+    ///
+    /// # Errors
+    ///
+    /// Embree reports one.
+    pub(crate) fn prepare(
+        library: &'a Library,
+        mesh: &'a SharedMesh,
+        quality: Quality,
+    ) -> Result<Self, String> {
+        let f = &library.functions;
+        let scene = Self::empty(library, Robustness::Default, quality)?;
+        scene.add_geometry(Some(quality), |geometry| {
+            let share = |kind, format, data: *const c_void, items: usize| {
+                // SAFETY: the geometry lives; the data have so many items, 12 bytes apart, outlive the scene and are not written to. Beyond the
+                // last vertex there is another, so that 16 bytes can be read of each.
+                unsafe {
+                    (f.set_shared_geometry_buffer)(geometry, kind, 0, format, data, 0, 12, items);
+                }
+            };
+            let SharedMesh { positions, triangles } = mesh;
+            let vertices = positions.len() - 1;
+            share(BUFFER_TYPE_VERTEX, FORMAT_FLOAT3, positions.as_ptr().cast(), vertices);
+            share(BUFFER_TYPE_INDEX, FORMAT_UINT3, triangles.as_ptr().cast(), triangles.len());
+            Ok(())
+        })?;
         library.check()?;
         Ok(scene)
+    }
+
+    /// Builds its tree: after that it may be traced.
+    ///
+    /// # Errors
+    ///
+    /// Embree reports one.
+    pub(crate) fn commit(&self) -> Result<(), String> {
+        // SAFETY: the scene lives, and nothing traces it yet.
+        unsafe { (self.library.functions.commit_scene)(self.handle.as_ptr()) };
+        self.library.check()
+    }
+
+    /// A scene without geometry.
+    fn empty(
+        library: &'a Library,
+        robustness: Robustness,
+        quality: Quality,
+    ) -> Result<Self, String> {
+        let f = &library.functions;
+        // SAFETY: the device lives; the scene is released in `drop`.
+        let handle = made(unsafe { (f.new_scene)(library.device.as_ptr()) })?;
+        let flags = if robustness == Robustness::Robust { SCENE_FLAG_ROBUST } else { 0 };
+        // SAFETY: the scene lives.
+        unsafe {
+            (f.set_scene_flags)(handle.as_ptr(), flags);
+            (f.set_scene_build_quality)(handle.as_ptr(), quality as c_int);
+        }
+        Ok(Self { library, robustness, handle })
+    }
+
+    /// Adds a mesh that `fill` gives its buffers, with a build quality of its own or the default one.
+    fn add_geometry(
+        &self,
+        quality: Option<Quality>,
+        fill: impl FnOnce(Handle) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let f = &self.library.functions;
+        let device = self.library.device.as_ptr();
+        // SAFETY: the device lives; the geometry is released below.
+        let geometry = made(unsafe { (f.new_geometry)(device, GEOMETRY_TYPE_TRIANGLE) })?.as_ptr();
+        let filled = fill(geometry);
+        // SAFETY: geometry and scene live, and the scene keeps the geometry. One without buffers is not attached.
+        unsafe {
+            if filled.is_ok() {
+                if let Some(quality) = quality {
+                    (f.set_geometry_build_quality)(geometry, quality as c_int);
+                }
+                (f.commit_geometry)(geometry);
+                (f.attach_geometry)(self.handle.as_ptr(), geometry);
+            }
+            (f.release_geometry)(geometry);
+        }
+        filled
     }
 
     /// Whether it has the flag ROBUST.
@@ -422,6 +563,7 @@ impl Record for Packet {
 }
 
 // Where the headers put things.
+const _: () = assert!(size_of::<Vec3>() == 12);
 const _: () = assert!(size_of::<Single>() == 96 && size_of::<Lanes>() == 21 * 64);
 const _: () = assert!(offset_of!(Single, normal) == 48 && offset_of!(Single, geometry) == 72);
 const _: () = assert!(offset_of!(Lanes, tfar) == 8 * 64 && offset_of!(Lanes, normal) == 12 * 64);

@@ -2,4 +2,6 @@
 
 mod ffi;
 
-pub(crate) use ffi::{Coherence, LANES, Library, Packet, Record, Robustness, Scene, Single};
+pub(crate) use ffi::{
+    Coherence, LANES, Library, Packet, Quality, Record, Robustness, Scene, SharedMesh, Single,
+};

@@ -22,22 +22,21 @@ pub(super) const ENTRY: PeerEntry = PeerEntry {
 };
 
 fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
+    let mut shapes = shapes(mesh);
+    let tree = Bvh::build_par(&mut shapes);
+    Ok(Box::new(Tree::new(tree, shapes)?))
+}
+
+/// The triangles as it wants them.
+pub(super) fn shapes(mesh: &TriangleMesh) -> Vec<Shape> {
     let shape = |number: u32| {
         let corners = mesh.corners(number);
-        let [min, max] = [Vec3::min, Vec3::max].map(|pick| {
-            let point = pick(pick(corners[0], corners[1]), corners[2]);
-            Point3::from(point.to_array())
-        });
-        let bounds = Aabb::with_bounds(min, max);
-        Shape { bounds, triangle: Corner::new(corners), number, node: 0 }
+        let mut shape =
+            Shape { bounds: Aabb::empty(), triangle: Corner::new(corners), number, node: 0 };
+        shape.measure(corners);
+        shape
     };
-    let mut shapes: Vec<_> = (0..mesh.triangles().len() as u32).map(shape).collect();
-    let tree = Bvh::build_par(&mut shapes);
-    let depth = depth(&tree);
-    if depth > DEEPEST {
-        return Err(format!("its tree is {depth} deep, its iterators panic beyond {DEEPEST}"));
-    }
-    Ok(Box::new(Tree { tree, shapes }))
+    (0..mesh.triangles().len() as u32).map(shape).collect()
 }
 
 /// The size of its iterators' stack.
@@ -57,16 +56,42 @@ fn depth(tree: &Bvh<f32, 3>) -> usize {
     deepest
 }
 
-struct Tree {
+/// A tree with the shapes that it was built over, owned or lent.
+pub(super) struct Tree<S> {
     tree: Bvh<f32, 3>,
-    shapes: Vec<Shape>,
+    shapes: S,
 }
 
-struct Shape {
+impl<S: AsRef<[Shape]>> Tree<S> {
+    /// # Errors
+    ///
+    /// The tree is too deep to be traced.
+    pub(super) fn new(tree: Bvh<f32, 3>, shapes: S) -> Result<Self, String> {
+        let depth = depth(&tree);
+        if depth > DEEPEST {
+            return Err(format!("its tree is {depth} deep, its iterators panic beyond {DEEPEST}"));
+        }
+        Ok(Self { tree, shapes })
+    }
+}
+
+/// A triangle with its box.
+pub(super) struct Shape {
     bounds: Aabb<f32, 3>,
     triangle: Corner,
     number: u32,
     node: usize,
+}
+
+impl Shape {
+    /// Computes the box.
+    pub(super) fn measure(&mut self, corners: [Vec3; 3]) {
+        let [min, max] = [Vec3::min, Vec3::max].map(|pick| {
+            let point = pick(pick(corners[0], corners[1]), corners[2]);
+            Point3::from(point.to_array())
+        });
+        self.bounds = Aabb::with_bounds(min, max);
+    }
 }
 
 impl Bounded<f32, 3> for Shape {
@@ -124,10 +149,10 @@ impl IntersectsAabb<f32, 3> for Clipped<'_> {
     }
 }
 
-impl Tree {
+impl<S: AsRef<[Shape]>> Tree<S> {
     fn nearest(&self, ray: &Pair) -> Option<(u32, f32)> {
         let (mut end, mut found) = (ray.ours.t_max, None);
-        for shape in self.tree.nearest_traverse_iterator(&ray.theirs, &self.shapes) {
+        for shape in self.tree.nearest_traverse_iterator(&ray.theirs, self.shapes.as_ref()) {
             // They come by the distance of their boxes.
             let entry = ray.theirs.intersection_slice_for_aabb(&shape.bounds);
             if entry.is_some_and(|(entry, _)| entry > end) {
@@ -144,7 +169,7 @@ impl Tree {
     fn clipped(&self, ray: &Pair) -> Option<(u32, f32)> {
         let query = Clipped { ray, end: Cell::new(ray.ours.t_max) };
         let mut found = None;
-        for shape in self.tree.traverse_iterator(&query, &self.shapes) {
+        for shape in self.tree.traverse_iterator(&query, self.shapes.as_ref()) {
             let t = ray.test(shape);
             if t < query.end.get() {
                 query.end.set(t);
@@ -156,11 +181,13 @@ impl Tree {
 
     fn any(&self, ray: &Pair) -> bool {
         let query = Clipped { ray, end: Cell::new(ray.ours.t_max) };
-        self.tree.traverse_iterator(&query, &self.shapes).any(|shape| ray.test(shape).is_finite())
+        self.tree
+            .traverse_iterator(&query, self.shapes.as_ref())
+            .any(|shape| ray.test(shape).is_finite())
     }
 }
 
-impl Peer for Tree {
+impl<S: AsRef<[Shape]> + Sync> Peer for Tree<S> {
     fn modes(&self) -> Vec<Mode<'_>> {
         vec![
             Mode::new("nearest", false, |set: &RaySet| {

@@ -17,10 +17,7 @@ pub(super) const ENTRY: PeerEntry = PeerEntry {
 };
 
 fn build<'a>(mesh: &'a TriangleMesh, library: Option<&'a Library>) -> Built<'a> {
-    let library = library.ok_or(
-        "absent; `pip download --no-deps embreex`, unzip the wheel, and give its \
-         embreex.libs/libembree4-*.so.4 as --embree LIB",
-    )?;
+    let library = library.ok_or(ABSENT)?;
     Ok(Box::new(Embree {
         fast: Scene::build(library, mesh, Robustness::Default)?,
         robust: Scene::build(library, mesh, Robustness::Robust)?,
@@ -36,16 +33,28 @@ impl Peer for Embree<'_> {
     fn modes(&self) -> Vec<Mode<'_>> {
         let (fast, robust) = (&self.fast, &self.robust);
         let (coherent, incoherent) = (Coherence::Coherent, Coherence::Incoherent);
-        vec![
-            mode::<Single>("1", fast, incoherent),
-            mode::<Packet>("16", fast, incoherent),
-            mode::<Packet>("16 coherent", fast, coherent),
+        let mut modes = fast_modes(fast);
+        modes.extend([
             mode::<Single>("1 robust", robust, incoherent),
             mode::<Packet>("16 robust", robust, incoherent),
             mode::<Packet>("16 coherent robust", robust, coherent),
-        ]
+        ]);
+        modes
     }
 }
+
+/// The modes in a scene without the flag ROBUST.
+pub(super) fn fast_modes<'a>(scene: &'a Scene<'a>) -> Vec<Mode<'a>> {
+    vec![
+        mode::<Single>("1", scene, Coherence::Incoherent),
+        mode::<Packet>("16", scene, Coherence::Incoherent),
+        mode::<Packet>("16 coherent", scene, Coherence::Coherent),
+    ]
+}
+
+/// What is said where there is none.
+pub(super) const ABSENT: &str = "absent; `pip download --no-deps embreex`, unzip the wheel, and give its \
+     embreex.libs/libembree4-*.so.4 as --embree LIB";
 
 /// The mode that traces one kind of record in a scene.
 fn mode<'a, R: Record + 'a>(

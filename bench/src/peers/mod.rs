@@ -1,6 +1,7 @@
 //! The kernels that are compared, one file per library. To add a library, write its file with a `pub(super) const ENTRY` and name it in
 //! `PEERS`; to add a mode to one, add a line to its `modes`.
 
+pub(crate) mod builds;
 mod bvh;
 mod each_ray;
 mod embree;

@@ -25,60 +25,100 @@ pub(super) const ENTRY: PeerEntry = PeerEntry {
 };
 
 fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
-    let corner = |point: raywood::Vec3| Vec3A::from_array(point.to_array());
-    let triangles: Vec<Triangle> = (0..mesh.triangles().len() as u32)
-        .map(|number| {
-            let [v0, v1, v2] = mesh.corners(number).map(corner);
-            Triangle { v0, v1, v2 }
-        })
-        .collect();
-    let in_order = |indices: &[u32]| {
-        indices.iter().map(|&i| RtTriangle::from(&triangles[i as usize])).collect()
-    };
+    let triangles = triangles(mesh);
     let params = BvhBuildParams::very_slow_build();
     let bvh2 = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
     let cwbvh = build_cwbvh_from_tris(&triangles, params, &mut Duration::default());
     Ok(Box::new(Obvhs {
-        bvh2_triangles: in_order(&bvh2.primitive_indices),
-        cwbvh_triangles: in_order(&cwbvh.primitive_indices),
-        bvh2,
-        cwbvh,
+        cwbvh: Ordered::new(cwbvh, &triangles),
+        bvh2: Ordered::new(bvh2, &triangles),
     }))
 }
 
+/// The mesh in its own format.
+pub(super) fn triangles(mesh: &TriangleMesh) -> Vec<Triangle> {
+    let corner = |point: raywood::Vec3| Vec3A::from_array(point.to_array());
+    let triangle = |number| {
+        let [v0, v1, v2] = mesh.corners(number).map(corner);
+        Triangle { v0, v1, v2 }
+    };
+    (0..mesh.triangles().len() as u32).map(triangle).collect()
+}
+
 struct Obvhs {
-    bvh2: Bvh2,
-    bvh2_triangles: Vec<RtTriangle>,
-    cwbvh: CwBvh,
-    cwbvh_triangles: Vec<RtTriangle>,
+    cwbvh: Ordered<CwBvh>,
+    bvh2: Ordered<Bvh2>,
 }
 
 impl Peer for Obvhs {
     fn modes(&self) -> Vec<Mode<'_>> {
-        // Its two trees have the same methods but no trait in common.
-        macro_rules! mode {
-            ($name:literal, $tree:ident, $triangles:ident) => {
-                Mode::new($name, false, move |set: &RaySet| {
-                    let test = move |ray: &Ray, place: usize| self.$triangles[place].intersect(ray);
-                    if set.kind.any_hit() {
-                        let occluded = move |&ray: &Ray| !self.$tree.ray_traverse_miss(ray, test);
-                        EachRay::new(set, convert, occluded).boxed()
-                    } else {
-                        let closest = move |&ray: &Ray| {
-                            let mut hit = RayHit::none();
-                            let found = self.$tree.ray_traverse(ray, &mut hit, test);
-                            found.then(|| {
-                                (self.$tree.primitive_indices[hit.primitive_id as usize], hit.t)
-                            })
-                        };
-                        EachRay::new(set, convert, closest).boxed()
-                    }
-                })
-            };
-        }
-        vec![mode!("cwbvh", cwbvh, cwbvh_triangles), mode!("bvh2", bvh2, bvh2_triangles)]
+        vec![self.cwbvh.mode("cwbvh"), self.bvh2.mode("bvh2")]
     }
 }
+
+/// A tree with triangles in the order of its leaves.
+pub(super) struct Ordered<T> {
+    tree: T,
+    triangles: Vec<RtTriangle>,
+}
+
+impl<T: Tree> Ordered<T> {
+    pub(super) fn new(tree: T, triangles: &[Triangle]) -> Self {
+        let in_order = |&i: &u32| RtTriangle::from(&triangles[i as usize]);
+        Self { triangles: tree.order().iter().map(in_order).collect(), tree }
+    }
+
+    pub(super) fn mode(&self, name: &'static str) -> Mode<'_> {
+        Mode::new(name, false, move |set: &RaySet| {
+            let test = move |ray: &Ray, place: usize| self.triangles[place].intersect(ray);
+            if set.kind.any_hit() {
+                let occluded = move |&ray: &Ray| !self.tree.misses(ray, test);
+                EachRay::new(set, convert, occluded).boxed()
+            } else {
+                let closest = move |&ray: &Ray| {
+                    let mut hit = RayHit::none();
+                    let found = self.tree.closest(ray, &mut hit, test);
+                    found.then(|| (self.tree.order()[hit.primitive_id as usize], hit.t))
+                };
+                EachRay::new(set, convert, closest).boxed()
+            }
+        })
+    }
+}
+
+/// What its two trees have in common: the same methods, but no trait.
+pub(super) trait Tree: Sync {
+    /// The number of the primitive at each place in the leaves.
+    fn order(&self) -> &[u32];
+    fn closest(&self, ray: Ray, hit: &mut RayHit, test: impl FnMut(&Ray, usize) -> f32) -> bool;
+    fn misses(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) -> bool;
+}
+
+macro_rules! tree {
+    ($type:ty) => {
+        impl Tree for $type {
+            fn order(&self) -> &[u32] {
+                &self.primitive_indices
+            }
+
+            fn closest(
+                &self,
+                ray: Ray,
+                hit: &mut RayHit,
+                test: impl FnMut(&Ray, usize) -> f32,
+            ) -> bool {
+                self.ray_traverse(ray, hit, test)
+            }
+
+            fn misses(&self, ray: Ray, test: impl FnMut(&Ray, usize) -> f32) -> bool {
+                self.ray_traverse_miss(ray, test)
+            }
+        }
+    };
+}
+
+tree!(CwBvh);
+tree!(Bvh2);
 
 fn convert(ray: &raywood::Ray) -> Ray {
     let vector = |v: raywood::Vec3| Vec3A::from_array(v.to_array());

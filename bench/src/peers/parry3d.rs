@@ -1,6 +1,7 @@
 //! `parry3d`: a triangle mesh with its tree by binned SAH, as its users have it, and its tree by PLOC, which it recommends for casting
 //! rays.
 
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy};
 use parry3d::query::{Ray, RayCast};
@@ -19,11 +20,20 @@ pub(super) const ENTRY: PeerEntry = PeerEntry {
 };
 
 fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
-    let vertices = mesh.positions().iter().map(|p| vector(*p)).collect();
-    let mesh = TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|e| e.to_string())?;
-    let leaves = mesh.triangles().map(|triangle| triangle.local_aabb()).enumerate();
-    let ploc = Bvh::from_iter(BvhBuildStrategy::Ploc, leaves);
+    let mesh = tri_mesh(mesh)?;
+    let ploc = Bvh::from_iter(BvhBuildStrategy::Ploc, leaves(&mesh));
     Ok(Box::new(Parry { mesh, ploc }))
+}
+
+/// Its own mesh, which comes with a tree.
+pub(super) fn tri_mesh(mesh: &TriangleMesh) -> Result<TriMesh, String> {
+    let vertices = mesh.positions().iter().map(|p| vector(*p)).collect();
+    TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| error.to_string())
+}
+
+/// The boxes of all triangles with their numbers.
+pub(super) fn leaves(mesh: &TriMesh) -> impl Iterator<Item = (usize, Aabb)> {
+    mesh.triangles().map(|triangle| triangle.local_aabb()).enumerate()
 }
 
 struct Parry {
@@ -39,14 +49,16 @@ impl Peer for Parry {
         let in_mesh = |(ray, t_max): &Segment| {
             CompositeShapeRef(&self.mesh).cast_local_ray(ray, *t_max, false)
         };
-        let in_ploc = |(ray, t_max): &Segment| {
-            let test = |number: u32, best: f32| {
-                self.mesh.triangle(number).cast_local_ray(ray, best, false)
-            };
-            self.ploc.cast_ray(ray, *t_max, test).filter(|hit| hit.1 < *t_max)
-        };
-        vec![mode("trimesh", in_mesh), mode("ploc", in_ploc)]
+        vec![mode("trimesh", in_mesh), tree_mode("ploc", &self.mesh, &self.ploc)]
     }
+}
+
+/// The mode that traces through a tree over a mesh.
+pub(super) fn tree_mode<'a>(name: &'static str, mesh: &'a TriMesh, tree: &'a Bvh) -> Mode<'a> {
+    mode(name, |(ray, t_max): &Segment| {
+        let test = |number, best| mesh.triangle(number).cast_local_ray(ray, best, false);
+        tree.cast_ray(ray, *t_max, test).filter(|hit| hit.1 < *t_max)
+    })
 }
 
 /// The mode that finds the closest hit, which answers both questions.

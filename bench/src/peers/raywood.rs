@@ -42,13 +42,7 @@ impl Peer for Raywood<'_> {
     fn modes(&self) -> Vec<Mode<'_>> {
         let Self { bvh, wide, fast } = self;
         vec![
-            Mode::new("wide batch", true, |set: &RaySet| {
-                if set.kind.any_hit() {
-                    Batch::boxed(set, |rays, occluded| wide.occluded_batch(rays, occluded))
-                } else {
-                    Batch::boxed(set, |rays, hits| wide.intersect_batch(rays, hits))
-                }
-            }),
+            batch_mode("wide batch", wide),
             Mode::new("wide single", true, |set: &RaySet| {
                 if set.kind.any_hit() {
                     EachRay::new(set, Ray::clone, |ray| wide.occluded(ray)).boxed()
@@ -88,6 +82,20 @@ impl Peer for Raywood<'_> {
             }),
         ]
     }
+}
+
+/// The watertight mode that is handed slices of rays.
+pub(super) fn batch_mode<'a>(
+    name: &'static str,
+    structure: &'a Structure<&'a TriangleMesh>,
+) -> Mode<'a> {
+    Mode::new(name, true, |set: &RaySet| {
+        if set.kind.any_hit() {
+            Batch::boxed(set, |rays, occluded| structure.occluded_batch(rays, occluded))
+        } else {
+            Batch::boxed(set, |rays, hits| structure.intersect_batch(rays, hits))
+        }
+    })
 }
 
 /// The rays of a set that have a point in common, given by that point and what else each has.

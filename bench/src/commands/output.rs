@@ -1,0 +1,21 @@
+//! Files of JSON that commands write.
+
+use std::fs::File;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::failure::Failure;
+
+/// Finds out whether a file can be written, before long work and without harm to what is there.
+pub(super) fn try_to_write(file: &Path) -> Result<(), Failure> {
+    File::options().append(true).create(true).open(file).map(drop).map_err(|error| {
+        Failure::BadInput(format!("{}: cannot be written: {error}", file.display()))
+    })
+}
+
+/// Writes a file anew.
+pub(super) fn write(file: &Path, value: &Value) -> Result<(), Failure> {
+    std::fs::write(file, format!("{value:#}\n"))
+        .map_err(|error| Failure::WhileRunning(format!("{}: {error}", file.display())))
+}
