@@ -6,9 +6,30 @@ use serde_json::Value;
 
 use crate::ray_sets::SetKind;
 
-/// The lines between which a page holds the summary.
-pub(crate) const BEGIN: &str = "<!-- made by `raywood-bench table`: begin -->";
-pub(crate) const END: &str = "<!-- made by `raywood-bench table`: end -->";
+/// What stands before and after a summary in a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Marks {
+    /// Of a run of `trace`.
+    Traces,
+    /// Of a run of `build`.
+    Builds,
+}
+
+impl Marks {
+    /// The lines between which the summary is.
+    fn lines(self) -> [&'static str; 2] {
+        match self {
+            Self::Traces => [
+                "<!-- made by `raywood-bench table`: begin -->",
+                "<!-- made by `raywood-bench table`: end -->",
+            ],
+            Self::Builds => [
+                "<!-- made by `raywood-bench table` of builds: begin -->",
+                "<!-- made by `raywood-bench table` of builds: end -->",
+            ],
+        }
+    }
+}
 
 /// A line of the summary for each scene: its label, the peer, and which of the peer's modes count.
 const LINES: &[(&str, &str, Option<bool>)] = &[
@@ -27,24 +48,14 @@ const LINES: &[(&str, &str, Option<bool>)] = &[
 ///
 /// The JSON is not that of a run.
 pub(crate) fn markdown(run: &Value) -> Result<String, String> {
-    let list = |key: &str| {
-        run[key]
-            .as_array()
-            .ok_or_else(|| format!("expected a list `{key}`: is this the JSON of a run?"))
-    };
-    let (scenes, measurements, ratios) = (list("scenes")?, list("measurements")?, list("ratios")?);
+    let (scenes, measurements, ratios) =
+        (list(run, "scenes")?, list(run, "measurements")?, list(run, "ratios")?);
     let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
-    let machine = &run["machine"];
-    let mut out = format!(
-        "Measured on {} on {}, {} cores, compiled for {}; Embree {}; {} rounds of at most {} rays. Nanoseconds per ray, smaller is \
-         better; ratios above 1 mean that Raywood is faster.\n",
-        text(&run["date"]).split('T').next().unwrap_or_default(),
-        text(&machine["cpu"]),
-        machine["cores"],
-        strings(&machine["compiled_for"]),
-        run["embree"]["version"].as_str().unwrap_or("absent"),
-        run["settings"]["rounds"],
-        run["settings"]["rays"],
+    let mut out = measured_on(run);
+    let _ = writeln!(
+        out,
+        "; {} rounds of at most {} rays. Nanoseconds per ray, smaller is better; ratios above 1 mean that Raywood is faster.",
+        run["settings"]["rounds"], run["settings"]["rays"],
     );
     let mut threads: Vec<_> = measurements.iter().filter_map(|m| m["threads"].as_u64()).collect();
     threads.sort_unstable();
@@ -108,18 +119,38 @@ pub(crate) fn markdown(run: &Value) -> Result<String, String> {
     Ok(out)
 }
 
-/// The page with what stands between [`BEGIN`] and [`END`] replaced.
+/// When and on what a run was made.
+pub(crate) fn measured_on(run: &Value) -> String {
+    let machine = &run["machine"];
+    format!(
+        "Measured on {} on {}, {} cores, compiled for {}; Embree {}",
+        run["date"].as_str().unwrap_or("?").split('T').next().unwrap_or_default(),
+        machine["cpu"].as_str().unwrap_or("?"),
+        machine["cores"],
+        strings(&machine["compiled_for"]),
+        run["embree"]["version"].as_str().unwrap_or("absent"),
+    )
+}
+
+/// A list that every run has.
+pub(crate) fn list<'a>(run: &'a Value, key: &str) -> Result<&'a [Value], String> {
+    let list = run[key].as_array().map(Vec::as_slice);
+    list.ok_or_else(|| format!("expected a list `{key}`: is this the JSON of a run?"))
+}
+
+/// The page with what stands between its marks replaced.
 ///
 /// # Errors
 ///
 /// The page does not have these lines, in this order.
-pub(crate) fn replace(page: &str, summary: &str) -> Result<String, String> {
+pub(crate) fn replace(page: &str, marks: Marks, summary: &str) -> Result<String, String> {
+    let [begin, end] = marks.lines();
     let parts = page
-        .split_once(BEGIN)
-        .and_then(|(before, rest)| rest.split_once(END).map(|(_, after)| (before, after)));
+        .split_once(begin)
+        .and_then(|(before, rest)| rest.split_once(end).map(|(_, after)| (before, after)));
     let (before, after) =
-        parts.ok_or_else(|| format!("expected the lines `{BEGIN}` and `{END}`"))?;
-    Ok(format!("{before}{BEGIN}\n\n{summary}\n{END}{after}"))
+        parts.ok_or_else(|| format!("expected the lines `{begin}` and `{end}`"))?;
+    Ok(format!("{before}{begin}\n\n{summary}\n{end}{after}"))
 }
 
 /// A time with three digits or one decimal.
@@ -128,7 +159,7 @@ fn nanoseconds(ns: f64) -> String {
 }
 
 /// A number of triangles, short.
-fn count(value: &Value) -> String {
+pub(crate) fn count(value: &Value) -> String {
     match value.as_u64() {
         Some(n) if n >= 999_500 => format!("{:.1}M", n as f64 / 1e6),
         Some(n) if n >= 1000 => format!("{:.0}k", n as f64 / 1e3),
@@ -195,26 +226,37 @@ mod tests {
 
     #[test]
     fn pages_keep_what_is_around_the_summary() {
-        let page = format!("a\n{BEGIN}\nold\n{END}\nb\n");
+        let [begin, end] = Marks::Builds.lines();
+        let page = format!("a\n{begin}\nold\n{end}\nb\n");
         assert_eq!(
-            replace(&page, "new\n").as_deref(),
-            Ok(&*format!("a\n{BEGIN}\n\nnew\n\n{END}\nb\n"))
+            replace(&page, Marks::Builds, "new\n").as_deref(),
+            Ok(&*format!("a\n{begin}\n\nnew\n\n{end}\nb\n"))
         );
-        assert!(replace("a\nb\n", "new").is_err());
+        assert!(replace(&page, Marks::Traces, "new").is_err());
     }
 
-    /// The page's table is the one that its recorded run makes.
+    /// The page's tables are those that its recorded runs make, and so is the picture.
     #[test]
-    fn the_readme_shows_a_recorded_run() {
+    fn the_readme_shows_recorded_runs() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let page = std::fs::read_to_string(folder.join("README.md")).expect("a README");
-        let name = page
-            .lines()
-            .find_map(|line| line.strip_prefix("Recorded run: [`")?.split('`').next())
-            .expect("the README names a recorded run");
-        let json = std::fs::read_to_string(folder.join(name)).expect("the recorded run");
-        let run = serde_json::from_str(&json).expect("JSON");
-        let expected = replace(&page, &markdown(&run).expect("a run")).expect("marks");
-        assert!(page == expected, "run `raywood-bench table bench/{name} --into bench/README.md`");
+        let run = |mark: &str| -> (String, Value) {
+            let link = |line: &str| Some(line.strip_prefix(mark)?.split('`').next()?.to_owned());
+            let name = page.lines().find_map(link).expect(mark);
+            let json = std::fs::read_to_string(folder.join(&name)).expect("the recorded run");
+            (name, serde_json::from_str(&json).expect("JSON"))
+        };
+        let shown = |name: &str, marks, summary: &str| {
+            let expected = replace(&page, marks, summary).expect("marks");
+            assert!(page == expected, "raywood-bench table bench/{name} --into bench/README.md");
+        };
+        let (name, traces) = run("Recorded run: [`");
+        shown(&name, Marks::Traces, &markdown(&traces).expect("a run"));
+        let (name, builds) = run("Recorded run of builds: [`");
+        shown(&name, Marks::Builds, &crate::build::table::markdown(&builds).expect("a run"));
+        let picture =
+            std::fs::read_to_string(folder.join("results/builds.svg")).expect("a picture");
+        let expected = crate::build::pareto::svg(&builds).expect("a run");
+        assert!(picture == expected, "raywood-bench plot bench/{name} -o bench/results/builds.svg");
     }
 }

@@ -116,7 +116,7 @@ struct Asked {
     set: usize,
     mode: &'static str,
     watertight: bool,
-    /// Seconds, 0 if they do not count.
+    /// Seconds, which may not count.
     outcome: Result<(f64, Agreement), String>,
 }
 
@@ -137,28 +137,19 @@ fn take_turn(builder: &mut (dyn Builder + '_), questions: &Questions) -> Result<
         for (set, (rays, expected)) in questions.sets.iter().enumerate() {
             let Mode { name, watertight, ref prepare } = mode;
             let Some(mut tracer) = prepare(rays) else { continue };
-            let outcome = ask(&mut *tracer, expected, questions.timed);
+            let outcome = ask(&mut *tracer, expected);
             asked.push(Asked { set, mode: name, watertight, outcome });
         }
     }
     Ok(Turn { cold, cost, asked })
 }
 
-/// Traces once to see whether the answers are right, and if so and asked for once more by the clock.
-fn ask(
-    tracer: &mut (dyn Tracer + '_),
-    expected: &Answers,
-    timed: bool,
-) -> Result<(f64, Agreement), String> {
-    tracer.reset();
-    tracer.trace();
-    let agreement = Agreement::of(expected, &tracer.answers())?;
-    agreement.verdict()?;
-    if !timed {
-        return Ok((0.0, agreement));
-    }
+/// Traces by the clock, and looks whether the answers are right.
+fn ask(tracer: &mut (dyn Tracer + '_), expected: &Answers) -> Result<(f64, Agreement), String> {
     tracer.reset();
     let (time, ()) = seconds(|| tracer.trace());
+    let agreement = Agreement::of(expected, &tracer.answers())?;
+    agreement.verdict()?;
     Ok((time, agreement))
 }
 

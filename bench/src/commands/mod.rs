@@ -3,6 +3,7 @@
 mod build;
 mod names;
 mod output;
+mod plot;
 
 mod scene_args;
 mod table;
@@ -19,6 +20,7 @@ pub(crate) enum Command {
     Trace(Box<trace::Args>),
     Build(Box<build::Args>),
     Table(table::Args),
+    Plot(plot::Args),
 }
 
 impl Command {
@@ -28,6 +30,7 @@ impl Command {
             Self::Trace(args) => trace::run(args),
             Self::Build(args) => build::run(args),
             Self::Table(args) => table::run(args),
+            Self::Plot(args) => plot::run(args),
         }
     }
 }

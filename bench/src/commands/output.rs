@@ -1,4 +1,4 @@
-//! Files of JSON that commands write.
+//! Files of JSON that commands write and read again.
 
 use std::fs::File;
 use std::path::Path;
@@ -18,4 +18,12 @@ pub(super) fn try_to_write(file: &Path) -> Result<(), Failure> {
 pub(super) fn write(file: &Path, value: &Value) -> Result<(), Failure> {
     std::fs::write(file, format!("{value:#}\n"))
         .map_err(|error| Failure::WhileRunning(format!("{}: {error}", file.display())))
+}
+
+/// Reads a file that was written.
+pub(super) fn read(file: &Path) -> Result<Value, Failure> {
+    let complain =
+        |error: &dyn std::fmt::Display| Failure::BadInput(format!("{}: {error}", file.display()));
+    let text = std::fs::read_to_string(file).map_err(|error| complain(&error))?;
+    serde_json::from_str(&text).map_err(|error| complain(&error))
 }
