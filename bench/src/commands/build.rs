@@ -81,10 +81,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let started = now();
     let pools = pools(&args.threads)?;
-    let version = match load_embree(args, 1)? {
-        Some(library) => Some(library.version().to_owned()),
-        None => None,
-    };
+    let version = load_embree(args, 1)?.map(|library| library.version().to_owned());
     let chosen: Vec<_> = builds().filter(|entry| is_chosen(args, entry)).collect();
     if chosen.is_empty() {
         return Err(Failure::BadInput("no library has a preset of that name".to_owned()));
