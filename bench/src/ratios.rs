@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
     use crate::answers::Agreement;
-    use crate::measure::Outcome;
+    use crate::outcome::Outcome;
     use crate::ray_sets::SetKind;
 
     fn row(peer: &'static str, mode: &'static str, watertight: bool, ns: f64) -> Row {

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::measure::{Measurement, Outcome, Row};
+use crate::measure::{Measurement, Row};
+use crate::outcome::{Outcome, nanoseconds};
 use crate::ratios::{Against, ratios};
 
 /// The table of one measurement.
@@ -17,19 +18,7 @@ pub(crate) fn text(measurement: &Measurement) -> String {
         "\n{scene}, {set}: {rays} rays, {share:.1}% hit; {threads} thread{plural}, ns per ray\n"
     );
     for row in rows {
-        let name = format!("{} {}", row.peer, row.mode);
-        let _ = match (&row.outcome, measurement.ns_per_ray(row)) {
-            (Outcome::Timed { timing, .. }, Some(ns)) => {
-                let spread = match timing.rounds() {
-                    1 => "once".to_owned(),
-                    _ => format!("±{:>3.0}%", 100.0 * timing.spread()),
-                };
-                writeln!(text, "  {name:<28} {ns:>8.1} {spread}")
-            }
-            (Outcome::Wrong(how), _) => writeln!(text, "  {name:<28}    wrong: {how}"),
-            (Outcome::Absent(why), _) => writeln!(text, "  {name:<28} {why}"),
-            (Outcome::Timed { .. }, None) => Ok(()),
-        };
+        text.push_str(&line(&format!("{} {}", row.peer, row.mode), &row.outcome, *rays));
     }
     for ratio in ratios(measurement) {
         let mode = if ratio.watertight { "watertight" } else { "fast" };
@@ -46,6 +35,22 @@ pub(crate) fn text(measurement: &Measurement) -> String {
         );
     }
     text
+}
+
+/// The line of one mode, with its time for each of so many questions.
+pub(crate) fn line<A>(name: &str, outcome: &Outcome<A>, questions: usize) -> String {
+    match outcome {
+        Outcome::Timed { timing, .. } => {
+            let spread = match timing.rounds() {
+                1 => "once".to_owned(),
+                _ => format!("±{:>3.0}%", 100.0 * timing.spread()),
+            };
+            let ns = nanoseconds(timing, questions);
+            format!("  {name:<28} {ns:>8.1} {spread}\n")
+        }
+        Outcome::Wrong(how) => format!("  {name:<28}    wrong: {how}\n"),
+        Outcome::Absent(why) => format!("  {name:<28} {why}\n"),
+    }
 }
 
 /// One measurement as JSON.

@@ -13,6 +13,8 @@ pub(crate) enum Marks {
     Traces,
     /// Of a run of `build`.
     Builds,
+    /// Of a run of `query`.
+    Queries,
 }
 
 impl Marks {
@@ -26,6 +28,10 @@ impl Marks {
             Self::Builds => [
                 "<!-- made by `raywood-bench table` of builds: begin -->",
                 "<!-- made by `raywood-bench table` of builds: end -->",
+            ],
+            Self::Queries => [
+                "<!-- made by `raywood-bench table` of queries: begin -->",
+                "<!-- made by `raywood-bench table` of queries: end -->",
             ],
         }
     }
@@ -119,16 +125,22 @@ pub(crate) fn markdown(run: &Value) -> Result<String, String> {
     Ok(out)
 }
 
-/// When and on what a run was made.
+/// When and on what a run was made, and with which Embree if it takes part in such runs.
 pub(crate) fn measured_on(run: &Value) -> String {
     let machine = &run["machine"];
+    let cores = match machine["cores"].as_u64() {
+        Some(1) => "1 core".to_owned(),
+        _ => format!("{} cores", machine["cores"]),
+    };
+    let embree = run
+        .get("embree")
+        .map(|embree| format!("; Embree {}", embree["version"].as_str().unwrap_or("absent")));
     format!(
-        "Measured on {} on {}, {} cores, compiled for {}; Embree {}",
+        "Measured on {} on {}, {cores}, compiled for {}{}",
         run["date"].as_str().unwrap_or("?").split('T').next().unwrap_or_default(),
         machine["cpu"].as_str().unwrap_or("?"),
-        machine["cores"],
         strings(&machine["compiled_for"]),
-        run["embree"]["version"].as_str().unwrap_or("absent"),
+        embree.unwrap_or_default(),
     )
 }
 
@@ -154,7 +166,7 @@ pub(crate) fn replace(page: &str, marks: Marks, summary: &str) -> Result<String,
 }
 
 /// A time with three digits or one decimal.
-fn nanoseconds(ns: f64) -> String {
+pub(crate) fn nanoseconds(ns: f64) -> String {
     if ns < 99.95 { format!("{ns:.1}") } else { format!("{ns:.0}") }
 }
 
@@ -252,6 +264,8 @@ mod tests {
         };
         let (name, traces) = run("Recorded run: [`");
         shown(&name, Marks::Traces, &markdown(&traces).expect("a run"));
+        let (name, queries) = run("Recorded run of queries: [`");
+        shown(&name, Marks::Queries, &crate::query::table::markdown(&queries).expect("a run"));
         let (name, builds) = run("Recorded run of builds: [`");
         shown(&name, Marks::Builds, &crate::build::table::markdown(&builds).expect("a run"));
         let picture =

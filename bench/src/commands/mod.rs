@@ -4,7 +4,7 @@ mod build;
 mod names;
 mod output;
 mod plot;
-
+mod query;
 mod scene_args;
 mod table;
 mod trace;
@@ -19,6 +19,7 @@ use crate::failure::Failure;
 pub(crate) enum Command {
     Trace(Box<trace::Args>),
     Build(Box<build::Args>),
+    Query(Box<query::Args>),
     Table(table::Args),
     Plot(plot::Args),
 }
@@ -29,6 +30,7 @@ impl Command {
         match self {
             Self::Trace(args) => trace::run(args),
             Self::Build(args) => build::run(args),
+            Self::Query(args) => query::run(args),
             Self::Table(args) => table::run(args),
             Self::Plot(args) => plot::run(args),
         }

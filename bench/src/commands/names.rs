@@ -3,6 +3,8 @@
 use raywood::Vec3;
 
 use crate::peers::PEERS;
+use crate::peers::queries::QUERY_PEERS;
+use crate::query::sets::QueryKind;
 use crate::ray_sets::SetKind;
 use crate::scenes::{SCENES, SceneEntry};
 
@@ -27,6 +29,14 @@ pub(super) fn set(text: &str) -> Result<SetKind, String> {
 
 pub(super) fn peer(text: &str) -> Result<&'static str, String> {
     named(PEERS, |peer| peer.name, text).map(|peer| peer.name)
+}
+
+pub(super) fn query_set(text: &str) -> Result<QueryKind, String> {
+    named(QueryKind::ALL, |set| set.name(), text)
+}
+
+pub(super) fn query_peer(text: &str) -> Result<&'static str, String> {
+    named(QUERY_PEERS, |peer| peer.name, text).map(|peer| peer.name)
 }
 
 /// Three finite numbers between commas.
@@ -56,6 +66,11 @@ mod tests {
         assert_eq!(said, "expected one of primary, shadow, mirror, ao, diffuse, shuffled");
         assert_eq!(peer("embree"), Ok("embree"));
         assert!(peer("embre").is_err());
+        assert_eq!(query_set("surface-near"), Ok(QueryKind::SurfaceNear));
+        let said = query_set("near").expect_err("no such set");
+        assert_eq!(said, "expected one of surface-near, box, far, crossings");
+        assert_eq!(query_peer("parry3d"), Ok("parry3d"));
+        assert_eq!(query_peer("embree"), Err("expected one of raywood, parry3d".to_owned()));
         assert_eq!(scene("terrain").map(|scene| scene.name), Ok("terrain"));
         assert!(scene("Terrain").is_err());
         assert_eq!(point("1, -2.5,3e2"), Ok(Vec3::new(1.0, -2.5, 300.0)));

@@ -4,14 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::output;
-use crate::build;
 use crate::failure::Failure;
 use crate::table::{self, Marks, replace};
+use crate::{build, query};
 
 /// Print the summary of a recorded run as Markdown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// What `trace --json` or `build --json` wrote
+    /// What `trace --json`, `build --json` or `query --json` wrote
     file: PathBuf,
 
     /// Put it into a page instead, between the marks that are there
@@ -26,6 +26,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let run = output::read(&args.file)?;
     let (marks, summary) = match run["command"].as_str() {
         Some("build") => (Marks::Builds, build::table::markdown(&run)),
+        Some("query") => (Marks::Queries, query::table::markdown(&run)),
         _ => (Marks::Traces, table::markdown(&run)),
     };
     let summary = summary.map_err(|error| complain(&args.file, &error))?;

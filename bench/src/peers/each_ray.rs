@@ -71,12 +71,7 @@ impl<R: Copy + Send + Sync, A: Answer, F: Fn(&R) -> A + Send + Sync> Tracer for 
     }
 
     fn trace(&mut self) {
-        let pieces = self.rays.par_chunks(PIECE).zip(self.answers.par_chunks_mut(PIECE));
-        pieces.for_each(|(rays, answers)| {
-            for (ray, answer) in rays.iter().zip(answers) {
-                *answer = (self.trace)(ray);
-            }
-        });
+        answer_each(&self.rays, &mut self.answers, &self.trace);
     }
 
     fn answers(&self) -> Answers {
@@ -114,9 +109,23 @@ impl<A: Answer, F: Fn(&[Ray], &mut [A]) + Send + Sync> Tracer for Batch<'_, A, F
     }
 }
 
-/// Reads all rays.
-fn warm<R: Copy>(rays: &[R]) {
-    for &ray in rays {
-        black_box(ray);
+/// Answers all questions one by one, pieces of them on each thread of the current rayon pool.
+pub(super) fn answer_each<Q: Sync, A: Send>(
+    questions: &[Q],
+    answers: &mut [A],
+    answer: impl Fn(&Q) -> A + Sync,
+) {
+    let pieces = questions.par_chunks(PIECE).zip(answers.par_chunks_mut(PIECE));
+    pieces.for_each(|(questions, answers)| {
+        for (question, place) in questions.iter().zip(answers) {
+            *place = answer(question);
+        }
+    });
+}
+
+/// Reads all questions.
+pub(super) fn warm<Q: Copy>(questions: &[Q]) {
+    for &question in questions {
+        black_box(question);
     }
 }

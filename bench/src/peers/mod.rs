@@ -8,6 +8,7 @@ mod embree;
 mod moeller_trumbore;
 mod obvhs;
 mod parry3d;
+pub(crate) mod queries;
 mod raywood;
 
 use ::raywood::TriangleMesh;

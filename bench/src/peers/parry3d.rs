@@ -21,14 +21,18 @@ pub(super) const ENTRY: PeerEntry = PeerEntry {
 
 fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
     let mesh = tri_mesh(mesh)?;
-    let ploc = Bvh::from_iter(BvhBuildStrategy::Ploc, leaves(&mesh));
-    Ok(Box::new(Parry { mesh, ploc }))
+    Ok(Box::new(Parry { ploc: ploc(&mesh), mesh }))
 }
 
 /// Its own mesh, which comes with a tree.
 pub(super) fn tri_mesh(mesh: &TriangleMesh) -> Result<TriMesh, String> {
     let vertices = mesh.positions().iter().map(|p| vector(*p)).collect();
     TriMesh::new(vertices, mesh.triangles().to_vec()).map_err(|error| error.to_string())
+}
+
+/// The tree over its mesh that it recommends for rays.
+pub(super) fn ploc(mesh: &TriMesh) -> Bvh {
+    Bvh::from_iter(BvhBuildStrategy::Ploc, leaves(mesh))
 }
 
 /// The boxes of all triangles with their numbers.
@@ -87,6 +91,6 @@ fn convert(ray: &raywood::Ray) -> Segment {
     (Ray::new(vector(ray.origin), vector(ray.direction)), ray.t_max.min(f32::MAX))
 }
 
-fn vector(v: raywood::Vec3) -> Vector {
+pub(super) fn vector(v: raywood::Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
