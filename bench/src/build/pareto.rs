@@ -10,12 +10,15 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use serde_json::Value;
 
+use super::labels::{Rect, places};
 use crate::peers::PEERS;
 use crate::table::{count, list};
 
-const PANEL: (u32, u32) = (620, 460);
+const PANEL: (u32, u32) = (620, 470);
 const LEGEND: u32 = 36;
 const TEXT: u32 = 14;
+/// About how wide a letter of text is.
+const LETTER: i32 = 6;
 const INK: RGBColor = RGBColor(0x3C, 0x40, 0x43);
 const GRID: RGBColor = RGBColor(0xE3, 0xE5, 0xE8);
 const FRONT: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
@@ -143,6 +146,7 @@ fn panel(area: &Canvas<'_>, title: &str, points: &[Point]) -> Result<(), Failed>
     let y = LogAxis::around(points.iter().map(|point| point.trace_ns), 0.03);
     let mut chart = ChartBuilder::on(area)
         .caption(title, letters(INK, HPos::Left))
+        .margin_top(14)
         .margin_right(20)
         .margin_left(6)
         .x_label_area_size(44)
@@ -168,14 +172,22 @@ fn panel(area: &Canvas<'_>, title: &str, points: &[Point]) -> Result<(), Failed>
         }
         steps.push((x, y));
     }
+    let corners: Vec<_> = steps.iter().map(|corner| chart.backend_coord(corner)).collect();
+    let lines: Vec<_> = corners.windows(2).map(|pair| Rect::between(pair[0], pair[1], 1)).collect();
     chart.draw_series(LineSeries::new(steps, FRONT.stroke_width(2)))?;
-    for point in points {
+
+    let place = |point: &Point| (point.build_ms.log10(), point.trace_ns.log10());
+    let label = |point: &Point| {
+        let width = LETTER * point.preset.chars().count() as i32;
+        (chart.backend_coord(&place(point)), width)
+    };
+    let labels: Vec<_> = points.iter().map(label).collect();
+    let (across, down) = chart.plotting_area().get_pixel_range();
+    let frame = Rect::between((across.start, down.start), (across.end, down.end), 0);
+    for (point, offset) in points.iter().zip(places(&labels, &lines, frame)) {
         let color = COLORS[point.peer % COLORS.len()];
-        let place = (point.build_ms.log10(), point.trace_ns.log10());
-        // Labels of one library stand above its marks and those of the next below: neighbours of two libraries do not cover each other.
-        let below = if point.peer % 2 == 0 { -11 } else { 12 };
-        let label = Text::new(point.preset.clone(), (0, below), letters(color, HPos::Center));
-        let mark = EmptyElement::at(place) + Circle::new((0, 0), 5, color.filled()) + label;
+        let label = Text::new(point.preset.clone(), offset, letters(color, HPos::Center));
+        let mark = EmptyElement::at(place(point)) + Circle::new((0, 0), 5, color.filled()) + label;
         chart.draw_series([mark])?;
     }
     Ok(())

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 
-use super::scene_args::SceneArgs;
+use super::scene_args::{SceneArgs, few_scenes};
 use super::{names, output, pools};
 use crate::build::ratios::ratios;
 use crate::build::report::{self, Place};
@@ -17,10 +17,7 @@ use crate::peers::builds::{BuildEntry, builds};
 use crate::pixel_order::PictureSize;
 use crate::ray_sets::{RaySet, SetKind, ray_sets};
 use crate::reference::Reference;
-use crate::scenes::{BenchScene, SCENES, SceneEntry};
-
-/// The scenes that are taken where none is named: of those that take a minute or two.
-const DEFAULT_SCENES: &[&str] = &["sponza", "dragon", "hall"];
+use crate::scenes::BenchScene;
 
 /// What every tree is asked where its rays are not timed.
 const CHECKED_SETS: &[SetKind] = &[SetKind::Primary, SetKind::Diffuse];
@@ -90,10 +87,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::try_to_write(file)?;
     }
 
-    let default: Vec<SceneEntry> =
-        SCENES.iter().filter(|scene| DEFAULT_SCENES.contains(&scene.name)).copied().collect();
     let (mut scenes, mut rows, mut compared) = (Vec::new(), Vec::new(), Vec::new());
-    for load in args.scenes.loaders(&default) {
+    for load in args.scenes.loaders(&few_scenes()) {
         let Some(scene) = load()? else { continue };
         let triangles = scene.mesh.triangles().len();
         let questions = questions(args, &scene)?;
@@ -229,8 +224,5 @@ mod tests {
         let count = names.len();
         names.dedup();
         assert_eq!(names.len(), count);
-        for scene in DEFAULT_SCENES {
-            assert!(SCENES.iter().any(|entry| entry.name == *scene), "{scene}");
-        }
     }
 }

@@ -6,7 +6,7 @@ use rayon::ThreadPool;
 use raywood_lab::timing::seconds;
 use serde_json::{Value, json};
 
-use super::scene_args::SceneArgs;
+use super::scene_args::{SceneArgs, few_scenes};
 use super::{names, output, pools};
 use crate::failure::Failure;
 use crate::machine::{machine, now};
@@ -17,10 +17,7 @@ use crate::query::ratios::ratios;
 use crate::query::reference::Reference;
 use crate::query::report;
 use crate::query::sets::{QueryKind, query_sets};
-use crate::scenes::{BenchScene, SCENES, SceneEntry};
-
-/// The scenes that are taken where none is named: of those that take a minute or two.
-const DEFAULT_SCENES: &[&str] = &["sponza", "dragon", "hall"];
+use crate::scenes::BenchScene;
 
 /// Let libraries find closest points and count crossings, and compare their times.
 #[derive(clap::Args)]
@@ -69,10 +66,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::try_to_write(file)?;
     }
 
-    let default: Vec<SceneEntry> =
-        SCENES.iter().filter(|scene| DEFAULT_SCENES.contains(&scene.name)).copied().collect();
     let (mut scenes, mut measurements) = (Vec::new(), Vec::new());
-    for load in args.scenes.loaders(&default) {
+    for load in args.scenes.loaders(&few_scenes()) {
         let Some(scene) = load()? else { continue };
         let (described, measured) = run_scene(args, &scene, &peers, &pools)?;
         scenes.push(described);
@@ -170,16 +165,4 @@ fn run_scene(
         "builds": builds,
     });
     Ok((described, measurements))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_default_scenes_are_there() {
-        for name in DEFAULT_SCENES {
-            assert!(SCENES.iter().any(|scene| scene.name == *name), "{name}");
-        }
-    }
 }

@@ -6,12 +6,13 @@ use raywood::Vec3;
 
 use super::names;
 use crate::failure::Failure;
-use crate::scenes::{BenchScene, SceneEntry, View, load_model};
+use crate::scenes::{BenchScene, SCENES, SceneEntry, View, load_model};
 
 /// The options that choose scenes.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Which scenes, separated by commas [default: those that are found]
+    /// Which scenes, separated by commas [default: those that are found, for build and query of
+    /// sponza, dragon and hall]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = names::scene)]
     scenes: Vec<SceneEntry>,
 
@@ -73,5 +74,22 @@ impl SceneArgs {
     }
 }
 
+/// The scenes that commands take where none is named whose runs over all of them would be long.
+pub(super) fn few_scenes() -> Vec<SceneEntry> {
+    let few = |scene: &&SceneEntry| ["sponza", "dragon", "hall"].contains(&scene.name);
+    SCENES.iter().filter(few).copied().collect()
+}
+
 /// Loads a scene.
 pub(crate) type Loader = Box<dyn Fn() -> Result<Option<BenchScene>, Failure>>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_scenes_are_those_that_the_help_names() {
+        let names: Vec<_> = few_scenes().iter().map(|scene| scene.name).collect();
+        assert_eq!(names, ["sponza", "dragon", "hall"]);
+    }
+}
