@@ -48,7 +48,7 @@ impl Rect {
 
 /// How high a label is, and how far its edge is from its mark's centre.
 const HEIGHT: i32 = 13;
-const GAP: i32 = 7;
+const GAP: i32 = 8;
 
 /// The offset of each label's centre from its mark. Every label stands inside the frame and covers as little as possible of the obstacles, of all marks, and of the labels
 /// before it; below its mark where nothing speaks against it. `labels` are the places of the marks and the widths of their labels.
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn labels_stand_below_where_there_is_room() {
-        assert_eq!(places(&[((100, 100), 40), ((200, 100), 40)], &[], FRAME), [(0, 13), (0, 13)]);
+        assert_eq!(places(&[((100, 100), 40), ((200, 100), 40)], &[], FRAME), [(0, 14), (0, 14)]);
     }
 
     #[test]

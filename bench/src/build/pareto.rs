@@ -17,8 +17,6 @@ use crate::table::{count, list};
 const PANEL: (u32, u32) = (620, 470);
 const LEGEND: u32 = 36;
 const TEXT: u32 = 14;
-/// About how wide a letter of text is.
-const LETTER: i32 = 6;
 const INK: RGBColor = RGBColor(0x3C, 0x40, 0x43);
 const GRID: RGBColor = RGBColor(0xE3, 0xE5, 0xE8);
 const FRONT: RGBColor = RGBColor(0x9A, 0xA0, 0xA6);
@@ -177,10 +175,7 @@ fn panel(area: &Canvas<'_>, title: &str, points: &[Point]) -> Result<(), Failed>
     chart.draw_series(LineSeries::new(steps, FRONT.stroke_width(2)))?;
 
     let place = |point: &Point| (point.build_ms.log10(), point.trace_ns.log10());
-    let label = |point: &Point| {
-        let width = LETTER * point.preset.chars().count() as i32;
-        (chart.backend_coord(&place(point)), width)
-    };
+    let label = |point: &Point| (chart.backend_coord(&place(point)), text_width(&point.preset));
     let labels: Vec<_> = points.iter().map(label).collect();
     let (across, down) = chart.plotting_area().get_pixel_range();
     let frame = Rect::between((across.start, down.start), (across.end, down.end), 0);
@@ -238,6 +233,17 @@ impl ValueFormatter<f64> for LogAxis {
     fn format_ext(&self, log: &f64) -> String {
         ((1e3 * 10f64.powf(*log)).round() / 1e3).to_string()
     }
+}
+
+/// About how wide text is, in pixels: which fonts there are is not known.
+fn text_width(text: &str) -> i32 {
+    let width = |letter: char| match letter {
+        'i' | 'l' | 't' | 'f' | ' ' => 4,
+        'm' | 'w' => 10,
+        letter if letter.is_uppercase() => 9,
+        _ => 7,
+    };
+    text.chars().map(width).sum()
 }
 
 fn letters(color: RGBColor, place: HPos) -> TextStyle<'static> {
