@@ -80,3 +80,62 @@ fn check(finder: &(dyn Finder + '_), expected: &Expected) -> Result<Agreement, S
     agreement.verdict()?;
     Ok(agreement)
 }
+
+#[cfg(test)]
+mod tests {
+    use raywood::Vec3;
+    use raywood_testkit::closed::torus;
+
+    use super::*;
+    use crate::peers::queries::QUERY_PEERS;
+    use crate::query::answers::Answers;
+    use crate::query::reference::Reference;
+    use crate::query::sets::query_sets;
+
+    /// The measurements of all sets on a torus, with the answers expected as they are or changed.
+    fn measurements(change: fn(&mut Answers)) -> Vec<Measurement> {
+        let mesh = torus(24, Vec3::new(5.0, 0.0, -3.0), 2.0, 0.5);
+        let reference = Reference::build(&mesh).expect("a tree");
+        let pools = [1, 2].map(|threads| {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool")
+        });
+        let built: Vec<_> = QUERY_PEERS
+            .iter()
+            .map(|peer| (peer.name, (peer.build)(&mesh).expect("a mesh that all take")))
+            .collect();
+        let sets = query_sets(QueryKind::ALL, &mesh, mesh.total_bounds().diagonal(), 2000);
+        let measured = |set| {
+            let mut expected = reference.expected(set).expect("brute force agrees");
+            change(&mut expected.answers);
+            let modes: Vec<_> = built
+                .iter()
+                .flat_map(|(peer, trees)| trees.modes().into_iter().map(|mode| (*peer, mode)))
+                .collect();
+            measure("torus", set, &expected, &modes, &pools, 2)
+        };
+        sets.iter().flat_map(measured).collect()
+    }
+
+    #[test]
+    fn all_modes_of_all_libraries_answer_all_sets_rightly() {
+        let measurements = measurements(|_| ());
+        assert_eq!(measurements.len(), 2 * QueryKind::ALL.len());
+        for measurement in measurements {
+            assert_eq!((measurement.queries, measurement.rows.len()), (2000, 4));
+            for row in &measurement.rows {
+                assert!(measurement.ns_per_query(row) > Some(0.0), "{row:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn who_does_not_answer_as_expected_has_no_time() {
+        let measurements = measurements(|answers| match answers {
+            Answers::Distances(distances) => distances[1234] *= 1.01,
+            Answers::Crossings(crossings) => crossings[..2].iter_mut().for_each(|n| *n += 1),
+        });
+        for row in measurements.iter().flat_map(|measurement| &measurement.rows) {
+            assert!(matches!(row.outcome, Outcome::Wrong(_)), "{row:?}");
+        }
+    }
+}
