@@ -10,6 +10,7 @@ mod machine;
 mod measure;
 mod memory;
 mod outcome;
+mod page;
 mod peers;
 mod pinhole;
 mod pixel_order;

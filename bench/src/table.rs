@@ -6,37 +6,6 @@ use serde_json::Value;
 
 use crate::ray_sets::SetKind;
 
-/// What stands before and after a summary in a page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Marks {
-    /// Of a run of `trace`.
-    Traces,
-    /// Of a run of `build`.
-    Builds,
-    /// Of a run of `query`.
-    Queries,
-}
-
-impl Marks {
-    /// The lines between which the summary is.
-    fn lines(self) -> [&'static str; 2] {
-        match self {
-            Self::Traces => [
-                "<!-- made by `raywood-bench table`: begin -->",
-                "<!-- made by `raywood-bench table`: end -->",
-            ],
-            Self::Builds => [
-                "<!-- made by `raywood-bench table` of builds: begin -->",
-                "<!-- made by `raywood-bench table` of builds: end -->",
-            ],
-            Self::Queries => [
-                "<!-- made by `raywood-bench table` of queries: begin -->",
-                "<!-- made by `raywood-bench table` of queries: end -->",
-            ],
-        }
-    }
-}
-
 /// A line of the summary for each scene: its label, the peer, and which of the peer's modes count.
 const LINES: &[(&str, &str, Option<bool>)] = &[
     ("Raywood, watertight", "raywood", Some(true)),
@@ -56,66 +25,28 @@ const LINES: &[(&str, &str, Option<bool>)] = &[
 pub(crate) fn markdown(run: &Value) -> Result<String, String> {
     let (scenes, measurements, ratios) =
         (list(run, "scenes")?, list(run, "measurements")?, list(run, "ratios")?);
-    let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
     let mut out = measured_on(run);
     let _ = writeln!(
         out,
         "; {} rounds of at most {} rays. Nanoseconds per ray, smaller is better; ratios above 1 mean that Raywood is faster.",
         run["settings"]["rounds"], run["settings"]["rays"],
     );
-    let mut threads: Vec<_> = measurements.iter().filter_map(|m| m["threads"].as_u64()).collect();
-    threads.sort_unstable();
-    threads.dedup();
-    let sets: Vec<_> = SetKind::ALL
-        .iter()
-        .map(|set| set.name())
-        .filter(|name| measurements.iter().any(|m| m["set"] == *name))
-        .collect();
-
-    for threads in threads {
-        let plural = if threads == 1 { "" } else { "s" };
-        let _ =
-            write!(out, "\n### {threads} thread{plural}\n\n| scene | | {} |\n", sets.join(" | "));
-        let _ = writeln!(out, "| --- | --- |{}", " ---: |".repeat(sets.len()));
-        for scene in scenes {
-            let mut label = format!("{} ({})", text(&scene["name"]), count(&scene["triangles"]));
-            let mut line = |name: &str, cells: Vec<Option<String>>| {
-                if cells.iter().any(Option::is_some) {
-                    let cells: Vec<_> = cells.into_iter().map(Option::unwrap_or_default).collect();
-                    let _ = writeln!(out, "| {label} | {name} | {} |", cells.join(" | "));
-                    label.clear();
-                }
-            };
-            let of = |value: &Value, set: &str| {
-                value["scene"] == scene["name"]
-                    && value["set"] == set
-                    && value["threads"] == threads
-            };
-            for (name, peer, watertight) in LINES {
-                let best = |set: &&str| {
-                    let measurement = measurements.iter().find(|m| of(m, set))?;
-                    let modes = measurement["modes"].as_array()?.iter();
-                    modes
-                        .filter(|mode| mode["peer"] == *peer)
-                        .filter(|mode| watertight.is_none_or(|w| mode["watertight"] == w))
-                        .filter_map(|mode| mode["ns_per_ray"].as_f64())
-                        .min_by(f64::total_cmp)
-                        .map(nanoseconds)
-                };
-                line(name, sets.iter().map(best).collect());
-            }
-            for (name, against) in [
-                ("**Embree robust / Raywood watertight**", "robust"),
-                ("**Embree best / Raywood**", "best"),
-            ] {
-                let ratio = |set: &&str| {
-                    let chosen = ratios.iter().find(|r| of(r, set) && r["against"] == against)?;
-                    Some(format!("**{:.2}**", chosen["ratio"].as_f64()?))
-                };
-                line(name, sets.iter().map(ratio).collect());
-            }
-        }
-    }
+    let sets: Vec<_> = SetKind::ALL.iter().map(|set| set.name()).collect();
+    let peers = LINES.iter().map(|&(label, peer, watertight)| {
+        let counts = move |mode: &Value| {
+            mode["peer"] == peer && watertight.is_none_or(|w| mode["watertight"] == w)
+        };
+        Line::new(label, move |of| fastest(measurements, of, counts, "ns_per_ray"))
+    });
+    let against = [
+        ("**Embree robust / Raywood watertight**", "robust"),
+        ("**Embree best / Raywood**", "best"),
+    ];
+    let against = against.into_iter().map(|(label, against)| {
+        Line::new(label, move |of| ratio(ratios, of, |ratio| ratio["against"] == against))
+    });
+    let lines: Vec<_> = peers.chain(against).collect();
+    out.push_str(&tables("", scenes, measurements, &sets, &lines));
     if ratios.iter().any(|ratio| ratio["unequal"] == true) {
         out.push_str(
             "\nThere is no fast mode of Raywood yet: where \"Embree best\" is not a robust mode, its time is held against Raywood's \
@@ -123,6 +54,89 @@ pub(crate) fn markdown(run: &Value) -> Result<String, String> {
         );
     }
     Ok(out)
+}
+
+/// Says whether a part of a run belongs to a cell of a table.
+type Chosen<'a> = &'a dyn Fn(&Value) -> bool;
+
+/// A line that tables have for each scene.
+pub(crate) struct Line<'a> {
+    label: &'static str,
+    /// What stands in the cell that the parts so chosen belong to.
+    cell: Box<dyn Fn(Chosen<'_>) -> Option<String> + 'a>,
+}
+
+impl<'a> Line<'a> {
+    pub(crate) fn new(
+        label: &'static str,
+        cell: impl Fn(Chosen<'_>) -> Option<String> + 'a,
+    ) -> Self {
+        Self { label, cell: Box::new(cell) }
+    }
+}
+
+/// A table for each number of threads, headed by them behind `title`: a column for each of the sets that were measured, and of each scene the lines that have anything in them.
+pub(crate) fn tables(
+    title: &str,
+    scenes: &[Value],
+    measurements: &[Value],
+    sets: &[&str],
+    lines: &[Line<'_>],
+) -> String {
+    let measured = |set: &&&str| measurements.iter().any(|m| m["set"] == **set);
+    let sets: Vec<_> = sets.iter().filter(measured).copied().collect();
+    let mut threads: Vec<_> = measurements.iter().filter_map(|m| m["threads"].as_u64()).collect();
+    threads.sort_unstable();
+    threads.dedup();
+    let mut out = String::new();
+    for threads in threads {
+        let plural = if threads == 1 { "" } else { "s" };
+        let _ = writeln!(out, "\n### {title}{threads} thread{plural}\n");
+        let _ = writeln!(out, "| scene | | {} |", sets.join(" | "));
+        let _ = writeln!(out, "| --- | --- |{}", " ---: |".repeat(sets.len()));
+        for scene in scenes {
+            let name = scene["name"].as_str().unwrap_or("?");
+            let mut scene_label = format!("{name} ({})", count(&scene["triangles"]));
+            for Line { label, cell } in lines {
+                let of_set = |set: &&str| {
+                    cell(&|part| {
+                        part["scene"] == scene["name"]
+                            && part["set"] == *set
+                            && part["threads"] == threads
+                    })
+                };
+                let cells: Vec<_> = sets.iter().map(of_set).collect();
+                if cells.iter().any(Option::is_some) {
+                    let cells: Vec<_> = cells.into_iter().map(Option::unwrap_or_default).collect();
+                    let _ = writeln!(out, "| {scene_label} | {label} | {} |", cells.join(" | "));
+                    scene_label.clear();
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The least time of those modes that count in the measurement of a cell.
+pub(crate) fn fastest(
+    measurements: &[Value],
+    of: Chosen<'_>,
+    counts: impl Fn(&Value) -> bool,
+    time: &str,
+) -> Option<String> {
+    let measurement = measurements.iter().find(|m| of(m))?;
+    let modes = measurement["modes"].as_array()?.iter().filter(|mode| counts(mode));
+    modes.filter_map(|mode| mode[time].as_f64()).min_by(f64::total_cmp).map(nanoseconds)
+}
+
+/// The ratio of a cell that counts.
+pub(crate) fn ratio(
+    ratios: &[Value],
+    of: Chosen<'_>,
+    counts: impl Fn(&Value) -> bool,
+) -> Option<String> {
+    let ratio = ratios.iter().find(|ratio| of(ratio) && counts(ratio))?;
+    Some(format!("**{:.2}**", ratio["ratio"].as_f64()?))
 }
 
 /// When and on what a run was made, and with which Embree if it takes part in such runs.
@@ -150,23 +164,8 @@ pub(crate) fn list<'a>(run: &'a Value, key: &str) -> Result<&'a [Value], String>
     list.ok_or_else(|| format!("expected a list `{key}`: is this the JSON of a run?"))
 }
 
-/// The page with what stands between its marks replaced.
-///
-/// # Errors
-///
-/// The page does not have these lines, in this order.
-pub(crate) fn replace(page: &str, marks: Marks, summary: &str) -> Result<String, String> {
-    let [begin, end] = marks.lines();
-    let parts = page
-        .split_once(begin)
-        .and_then(|(before, rest)| rest.split_once(end).map(|(_, after)| (before, after)));
-    let (before, after) =
-        parts.ok_or_else(|| format!("expected the lines `{begin}` and `{end}`"))?;
-    Ok(format!("{before}{begin}\n\n{summary}\n{end}{after}"))
-}
-
 /// A time with three digits or one decimal.
-pub(crate) fn nanoseconds(ns: f64) -> String {
+fn nanoseconds(ns: f64) -> String {
     if ns < 99.95 { format!("{ns:.1}") } else { format!("{ns:.0}") }
 }
 
@@ -187,8 +186,6 @@ fn strings(value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use serde_json::json;
 
     use super::*;
@@ -234,43 +231,5 @@ mod tests {
             ]
         );
         assert!(markdown(&json!({ "scenes": [] })).is_err());
-    }
-
-    #[test]
-    fn pages_keep_what_is_around_the_summary() {
-        let [begin, end] = Marks::Builds.lines();
-        let page = format!("a\n{begin}\nold\n{end}\nb\n");
-        assert_eq!(
-            replace(&page, Marks::Builds, "new\n").as_deref(),
-            Ok(&*format!("a\n{begin}\n\nnew\n\n{end}\nb\n"))
-        );
-        assert!(replace(&page, Marks::Traces, "new").is_err());
-    }
-
-    /// The page's tables are those that its recorded runs make, and so is the picture.
-    #[test]
-    fn the_readme_shows_recorded_runs() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let page = std::fs::read_to_string(folder.join("README.md")).expect("a README");
-        let run = |mark: &str| -> (String, Value) {
-            let link = |line: &str| Some(line.strip_prefix(mark)?.split('`').next()?.to_owned());
-            let name = page.lines().find_map(link).expect(mark);
-            let json = std::fs::read_to_string(folder.join(&name)).expect("the recorded run");
-            (name, serde_json::from_str(&json).expect("JSON"))
-        };
-        let shown = |name: &str, marks, summary: &str| {
-            let expected = replace(&page, marks, summary).expect("marks");
-            assert!(page == expected, "raywood-bench table bench/{name} --into bench/README.md");
-        };
-        let (name, traces) = run("Recorded run: [`");
-        shown(&name, Marks::Traces, &markdown(&traces).expect("a run"));
-        let (name, queries) = run("Recorded run of queries: [`");
-        shown(&name, Marks::Queries, &crate::query::table::markdown(&queries).expect("a run"));
-        let (name, builds) = run("Recorded run of builds: [`");
-        shown(&name, Marks::Builds, &crate::build::table::markdown(&builds).expect("a run"));
-        let picture =
-            std::fs::read_to_string(folder.join("results/builds.svg")).expect("a picture");
-        let expected = crate::build::pareto::svg(&builds).expect("a run");
-        assert!(picture == expected, "raywood-bench plot bench/{name} -o bench/results/builds.svg");
     }
 }

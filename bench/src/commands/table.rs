@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::output;
 use crate::failure::Failure;
-use crate::table::{self, Marks, replace};
-use crate::{build, query};
+use crate::page::{Marks, replace};
+use crate::{build, query, table};
 
 /// Print the summary of a recorded run as Markdown.
 #[derive(clap::Args)]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::sets::QueryKind;
-use crate::table::{count, list, measured_on, nanoseconds};
+use crate::table::{Line, fastest, list, measured_on, ratio, tables};
 
 /// A line of the summary for each scene: its label, the peer, and which of the peer's modes count.
 const LINES: &[(&str, &str, Option<&str>)] = &[
@@ -32,58 +32,18 @@ pub(crate) fn markdown(run: &Value) -> Result<String, String> {
         "; {} rounds of {} points or rays. Nanoseconds per query, smaller is better; ratios above 1 mean that Raywood is faster.",
         run["settings"]["rounds"], run["settings"]["queries"],
     );
-    let mut threads: Vec<_> = measurements.iter().filter_map(|m| m["threads"].as_u64()).collect();
-    threads.sort_unstable();
-    threads.dedup();
-    let sets: Vec<_> = QueryKind::ALL
-        .iter()
-        .map(|set| set.name())
-        .filter(|name| measurements.iter().any(|m| m["set"] == *name))
-        .collect();
-
-    for threads in threads {
-        let plural = if threads == 1 { "" } else { "s" };
-        let _ = writeln!(out, "\n### Queries, {threads} thread{plural}\n");
-        let _ = writeln!(out, "| scene | | {} |", sets.join(" | "));
-        let _ = writeln!(out, "| --- | --- |{}", " ---: |".repeat(sets.len()));
-        for scene in scenes {
-            let name = scene["name"].as_str().unwrap_or("?");
-            let mut label = format!("{name} ({})", count(&scene["triangles"]));
-            let mut line = |name: &str, cells: Vec<Option<String>>| {
-                if cells.iter().any(Option::is_some) {
-                    let cells: Vec<_> = cells.into_iter().map(Option::unwrap_or_default).collect();
-                    let _ = writeln!(out, "| {label} | {name} | {} |", cells.join(" | "));
-                    label.clear();
-                }
-            };
-            let of = |value: &Value, set: &str| {
-                value["scene"] == scene["name"]
-                    && value["set"] == set
-                    && value["threads"] == threads
-            };
-            for (name, peer, chosen) in LINES {
-                let best = |set: &&str| {
-                    let measurement = measurements.iter().find(|m| of(m, set))?;
-                    let modes = measurement["modes"].as_array()?.iter();
-                    modes
-                        .filter(|mode| mode["peer"] == *peer)
-                        .filter(|mode| chosen.is_none_or(|chosen| mode["mode"] == chosen))
-                        .filter_map(|mode| mode["ns_per_query"].as_f64())
-                        .min_by(f64::total_cmp)
-                        .map(nanoseconds)
-                };
-                line(name, sets.iter().map(best).collect());
-            }
-            for (name, mode) in RATIOS {
-                let ratio = |set: &&str| {
-                    let chosen =
-                        ratios.iter().find(|r| of(r, set) && r["raywood_mode"] == *mode)?;
-                    Some(format!("**{:.2}**", chosen["ratio"].as_f64()?))
-                };
-                line(name, sets.iter().map(ratio).collect());
-            }
-        }
-    }
+    let sets: Vec<_> = QueryKind::ALL.iter().map(|set| set.name()).collect();
+    let peers = LINES.iter().map(|&(label, peer, chosen)| {
+        let counts = move |mode: &Value| {
+            mode["peer"] == peer && chosen.is_none_or(|chosen| mode["mode"] == chosen)
+        };
+        Line::new(label, move |of| fastest(measurements, of, counts, "ns_per_query"))
+    });
+    let against = RATIOS.iter().map(|&(label, mode)| {
+        Line::new(label, move |of| ratio(ratios, of, |ratio| ratio["raywood_mode"] == mode))
+    });
+    let lines: Vec<_> = peers.chain(against).collect();
+    out.push_str(&tables("Queries, ", scenes, measurements, &sets, &lines));
     Ok(out)
 }
 
