@@ -11,11 +11,14 @@ use crate::prepared::SurfaceMaterial;
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 pub(crate) const MOST_CROSSINGS: u32 = 32;
 
-/// Finds out which rays may meet something that lets light through: for each ray a number that is zero where it cannot.
+/// Finds out which rays to a light may meet something that lets light through: for each ray a number that is zero where it cannot.
 pub(crate) struct LightMayPass<'a> {
     /// Boxes outside of which nothing lets light through.
     pub(crate) bounds: &'a [Aabb],
-    pub(crate) rays: &'a [Ray],
+    /// Where the rays go.
+    pub(crate) aim: Aim,
+    /// Where they start.
+    pub(crate) origins: &'a [Vec3],
     /// As many as there are rays.
     pub(crate) answers: &'a mut [u32],
 }
@@ -26,27 +29,28 @@ impl Vectorized for LightMayPass<'_> {
     #[inline(always)]
     fn run(self) {
         const GROUP: usize = 16;
-        for (rays, answers) in self.rays.chunks(GROUP).zip(self.answers.chunks_mut(GROUP)) {
+        for (places, answers) in self.origins.chunks(GROUP).zip(self.answers.chunks_mut(GROUP)) {
             // Sixteen rays in columns.
-            let mut ends = [[0.0; GROUP]; 2];
             let mut origins = [[0.0; GROUP]; 3];
+            for (lane, origin) in places.iter().enumerate() {
+                [origins[0][lane], origins[1][lane], origins[2][lane]] = origin.to_array();
+            }
             let mut reciprocals = [[0.0; GROUP]; 3];
-            for (lane, ray) in rays.iter().enumerate() {
-                [ends[0][lane], ends[1][lane]] = [ray.t_min, ray.t_max];
-                let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-                for axis in 0..3 {
-                    origins[axis][lane] = origin[axis];
-                    reciprocals[axis][lane] = 1.0 / direction[axis];
-                }
+            for lane in 0..GROUP {
+                let origin = Vec3::new(origins[0][lane], origins[1][lane], origins[2][lane]);
+                let direction = self.aim.ray_from(origin).direction;
+                reciprocals[0][lane] = 1.0 / direction.x;
+                reciprocals[1][lane] = 1.0 / direction.y;
+                reciprocals[2][lane] = 1.0 / direction.z;
             }
 
+            let interval = [0.0, self.aim.ray_from(Vec3::ZERO).t_max];
             let mut may_pass = [0; GROUP];
             for bounds in self.bounds {
                 for lane in 0..GROUP {
                     let [origin, reciprocal] = [&origins, &reciprocals].map(|columns| {
                         Vec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
                     });
-                    let interval = [ends[0][lane], ends[1][lane]];
                     may_pass[lane] |= u32::from(may_cross(origin, reciprocal, interval, bounds));
                 }
             }
@@ -94,7 +98,7 @@ pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Option<Ray> {
         LightKind::Directional { direction } => -direction,
         LightKind::Ambient => return None,
     };
-    Some(ray_towards_light(light, point.origin_towards(towards)))
+    Some(Aim::at(light).ray_from(point.origin_towards(towards)))
 }
 
 /// The direction to a light that shines.
@@ -102,16 +106,36 @@ fn shining(light: Illumination) -> Option<Vec3> {
     light.shines.then_some(light.direction)
 }
 
-/// The ray from where shadow rays start to a light.
-#[inline(always)]
-pub(crate) fn ray_towards_light(light: &Light, origin: Vec3) -> Ray {
-    match light.kind {
-        LightKind::Point { position } | LightKind::Spot { position, .. } => {
-            Ray::short_of(origin, position)
+/// Where the rays to a light go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Aim {
+    /// To one point.
+    Point(Vec3),
+    /// In one direction.
+    Direction(Vec3),
+}
+
+impl Aim {
+    /// The aim of the rays to a light.
+    #[inline(always)]
+    pub(crate) fn at(light: &Light) -> Self {
+        match light.kind {
+            LightKind::Point { position } | LightKind::Spot { position, .. } => {
+                Self::Point(position)
+            }
+            LightKind::Directional { direction } => Self::Direction(-direction),
+            // It comes from all sides; nobody asks.
+            LightKind::Ambient => Self::Direction(Vec3::ZERO),
         }
-        LightKind::Directional { direction } => Ray::new(origin, -direction),
-        // It comes from all sides; nobody asks.
-        LightKind::Ambient => Ray::new(origin, Vec3::ZERO),
+    }
+
+    /// The ray from where shadow rays start.
+    #[inline(always)]
+    pub(crate) fn ray_from(self, origin: Vec3) -> Ray {
+        match self {
+            Self::Point(target) => Ray::short_of(origin, target),
+            Self::Direction(direction) => Ray::new(origin, direction),
+        }
     }
 }
 

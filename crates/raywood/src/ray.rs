@@ -41,9 +41,11 @@ impl Ray {
     /// As [`between`](Self::between), but ends a 4096th of the way before `to`, so that a surface that this lies on does not count.
     #[inline]
     pub fn short_of(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
-        const END: f32 = 1.0 - 1.0 / 4096.0;
-        Self::between(from, to).with_interval(0.0, END)
+        Self::between(from, to).with_interval(0.0, Self::SHORT_END)
     }
+
+    /// Where rays end that stop [a little before](Self::short_of) the point that they go to.
+    pub const SHORT_END: f32 = 1.0 - 1.0 / 4096.0;
 
     /// The same ray over another interval, `t_min <= t < t_max`.
     #[inline]

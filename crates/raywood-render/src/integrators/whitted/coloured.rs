@@ -5,7 +5,7 @@ use raywood_scene::Rgb;
 
 use crate::integrators::Frame;
 use crate::lights::Lights;
-use crate::shadows::{MOST_CROSSINGS, Passage, passage, ray_towards_light};
+use crate::shadows::{Aim, MOST_CROSSINGS, Passage, passage};
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
 
@@ -79,7 +79,7 @@ impl ColouredShadows {
             if share.max_element() < frame.options.cutoff || crossings == MOST_CROSSINGS {
                 continue;
             }
-            rays[left] = ray_towards_light(&directed[light as usize], origin);
+            rays[left] = Aim::at(&directed[light as usize]).ray_from(origin);
             bringing[left] = Bringing { pixel, light, crossings, brought, share };
             left += 1;
         }

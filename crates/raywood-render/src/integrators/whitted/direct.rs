@@ -1,13 +1,15 @@
 //! Light that comes straight from the lights, if nothing is in the way.
 
-use raywood::SimdLevel;
+use raywood::{Ray, SimdLevel, Vec3};
+use raywood_scene::Rgb;
 
 use super::coloured::ColouredShadows;
 use super::lit_points::{LitPoint, LitPoints, SendShadowRays, ShadowRays};
 use super::queue::WAVE;
 use crate::integrators::Frame;
 use crate::lights::Lights;
-use crate::shadows::LightMayPass;
+use crate::prepared::PreparedScene;
+use crate::shadows::{Aim, LightMayPass};
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
 
@@ -17,6 +19,8 @@ pub(super) struct DirectLight {
     points: Box<LitPoints>,
     /// For each light.
     shadows: Vec<ShadowRays>,
+    /// The rays of a light that has only a direction.
+    parallel: Vec<Ray>,
     blocked: Vec<bool>,
     /// Of the rays of a light those that may meet something transparent: not zero.
     may_pass: Vec<u32>,
@@ -30,7 +34,7 @@ impl DirectLight {
         self.coloured.clear();
         self.shadows.resize_with(lights, ShadowRays::default);
         for shadows in &mut self.shadows {
-            shadows.rays.clear();
+            shadows.origins.clear();
             shadows.light.clear();
         }
     }
@@ -61,44 +65,64 @@ impl DirectLight {
     ) {
         let opaque = frame.options.opaque_shadows;
         let bounds = if opaque { &[] } else { frame.scene.transmissive_bounds() };
-        let lights = frame.lights.directed.len();
-        for (number, shadows) in self.shadows[..lights].iter_mut().enumerate() {
-            if shadows.rays.len() < fewest {
+        let Self { shadows, parallel, blocked, may_pass, coloured, .. } = self;
+        for (number, (light, shadows)) in frame.lights.directed.iter().zip(shadows).enumerate() {
+            if shadows.origins.len() < fewest {
                 continue;
             }
             // Whole packets, unless these are the last.
-            let count = shadows.rays.len();
+            let count = shadows.origins.len();
             let count = if fewest > 1 { count - count % WAVE } else { count };
-            let (rays, brought) = (&shadows.rays[..count], &shadows.light[..count]);
-            self.blocked.resize(rays.len(), false);
-            frame.scene.structure().occluded_batch_serial(rays, &mut self.blocked);
-            self.may_pass.clear();
-            self.may_pass.resize(rays.len(), 0);
+            let origins = &shadows.origins[..count];
+            let aim = Aim::at(light);
+            blocked.resize(count, false);
+            ask_whether_blocked(frame.scene, aim, origins, parallel, blocked);
+            may_pass.clear();
+            may_pass.resize(count, 0);
             if !bounds.is_empty() {
-                level.run(LightMayPass { bounds, rays, answers: &mut self.may_pass });
+                level.run(LightMayPass { bounds, aim, origins, answers: may_pass });
             }
-            let answers = self.blocked.iter().zip(&self.may_pass);
-            for ((ray, (pixel, brought)), (blocked, may_pass)) in
-                rays.iter().zip(brought).zip(answers)
-            {
-                if !blocked {
-                    counts.shadow += 1;
-                    pixels[*pixel as usize] += *brought;
-                } else if *may_pass != 0 {
-                    // Something transparent may be all that is in the way.
-                    self.coloured.push(*ray, number, *pixel, *brought);
-                } else {
-                    counts.shadow += 1;
+
+            counts.shadow += count as u64;
+            let answers = blocked.iter().zip(&*may_pass);
+            let rays = origins.iter().zip(&shadows.light[..count]);
+            for ((origin, (pixel, brought)), (blocked, may_pass)) in rays.zip(answers) {
+                if *blocked && *may_pass != 0 {
+                    // Something transparent may be all that is in the way. The ray counts again, surface by surface.
+                    counts.shadow -= 1;
+                    coloured.push(aim.ray_from(*origin), number, *pixel, *brought);
                 }
+                // No branch, which would follow the edges of shadows.
+                pixels[*pixel as usize] += if *blocked { Rgb::ZERO } else { *brought };
             }
-            shadows.rays.drain(..count);
+            shadows.origins.drain(..count);
             shadows.light.drain(..count);
         }
 
         // Only many rays at a time keep enough of them in flight.
         let fewest = if fewest > 1 { WAVE } else { 1 };
-        while self.coloured.len() >= fewest {
-            self.coloured.advance(frame, pixels, counts);
+        while coloured.len() >= fewest {
+            coloured.advance(frame, pixels, counts);
+        }
+    }
+}
+
+/// Asks whether anything is between points and a light. `parallel` is memory.
+fn ask_whether_blocked(
+    scene: &PreparedScene<'_>,
+    aim: Aim,
+    origins: &[Vec3],
+    parallel: &mut Vec<Ray>,
+    blocked: &mut [bool],
+) {
+    match aim {
+        Aim::Point(target) => {
+            scene.structure().occluded_towards_serial(target, Ray::SHORT_END, origins, blocked);
+        }
+        Aim::Direction(_) => {
+            parallel.clear();
+            parallel.extend(origins.iter().map(|origin| aim.ray_from(*origin)));
+            scene.structure().occluded_batch_serial(parallel, blocked);
         }
     }
 }

@@ -1,13 +1,12 @@
 //! The points of a wave that lights may reach, in columns: what one light brings to all of them is computed with vectors.
 
-use raywood::{Ray, Vec3, Vectorized};
+use raywood::{Vec3, Vectorized};
 use raywood_scene::{Light, LightKind, Rgb};
 
 use super::queue::WAVE;
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::power::power;
 use crate::shading::light_cosine;
-use crate::shadows::ray_towards_light;
 
 /// A point that lights may reach.
 pub(super) struct LitPoint {
@@ -52,10 +51,10 @@ pub(super) struct LitPoints {
     views: Columns,
 }
 
-/// The shadow rays of one light: all go to one point, or in one direction.
+/// The shadow rays of one light: all go to one point, or in one direction, so that only where they start is written down.
 #[derive(Default)]
 pub(super) struct ShadowRays {
-    pub(super) rays: Vec<Ray>,
+    pub(super) origins: Vec<Vec3>,
     /// To which pixel the light adds how much if nothing is in the way.
     pub(super) light: Vec<(u32, Rgb)>,
 }
@@ -155,7 +154,7 @@ impl Vectorized for SendShadowRays<'_> {
 impl SendShadowRays<'_> {
     #[inline(always)]
     fn send(self, illuminate: impl Fn(Vec3) -> Illumination) {
-        let Self { light, points, shadows } = self;
+        let Self { points, shadows, .. } = self;
         let count = points.count.min(WAVE);
 
         // What the light brings to each point: Lambert's law.
@@ -186,11 +185,15 @@ impl SendShadowRays<'_> {
             }
         }
 
+        // Which points see the light, found without branches.
+        let mut lit = [0; WAVE];
+        let mut lit_count = 0;
         for (number, cosine) in cosines[..count].iter().enumerate() {
-            if *cosine > 0.0 {
-                shadows.rays.push(ray_towards_light(light, get(&points.origins, number)));
-                shadows.light.push((points.pixels[number], get(&brought, number)));
-            }
+            lit[lit_count] = number as u8;
+            lit_count += usize::from(*cosine > 0.0);
         }
+        let lit = lit[..lit_count].iter().map(|&number| usize::from(number));
+        shadows.origins.extend(lit.clone().map(|number| get(&points.origins, number)));
+        shadows.light.extend(lit.map(|number| (points.pixels[number], get(&brought, number))));
     }
 }
