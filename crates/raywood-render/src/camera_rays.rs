@@ -104,6 +104,12 @@ impl CameraRays {
         direction / direction.length()
     }
 
+    /// Where all rays start.
+    #[inline(always)]
+    pub(crate) fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
     /// The ray from the eye in a direction.
     #[inline(always)]
     pub(crate) fn ray_along(&self, direction: impl Into<Vec3>) -> Ray {

@@ -114,8 +114,15 @@ impl<'a> PreparedScene<'a> {
         &self.materials[self.material_index(primitive)]
     }
 
+    /// A material by its [number](Self::material_index).
     #[inline(always)]
-    fn material_index(&self, primitive: u32) -> usize {
+    pub(crate) fn material(&self, index: u32) -> &SurfaceMaterial {
+        &self.materials[index as usize]
+    }
+
+    /// The number of the material of a primitive.
+    #[inline(always)]
+    pub(crate) fn material_index(&self, primitive: u32) -> usize {
         let id = match self.which(primitive) {
             Which::Triangle(triangle) => self.scene.mesh.materials.get(triangle as usize),
             Which::Sphere(sphere) => self.scene.sphere_materials.get(sphere as usize),

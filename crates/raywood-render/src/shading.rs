@@ -1,11 +1,10 @@
 //! The surface at a hit, ready for shading: normals turned to the viewer, the material, the diffuse colour there.
 
-use raywood::{Hit, Ray, SurfacePoint, Vec3};
+use raywood::{SurfacePoint, Vec3};
 use raywood_scene::Rgb;
 
-use crate::PreparedScene;
 use crate::fresnel::reflect;
-use crate::prepared::{SurfaceMaterial, Which};
+use crate::prepared::SurfaceMaterial;
 
 /// The surface that a ray hit.
 pub(crate) struct Surface<'a> {
@@ -23,50 +22,7 @@ pub(crate) struct Surface<'a> {
     pub(crate) diffuse: Rgb,
 }
 
-impl<'a> Surface<'a> {
-    /// The surface at a hit of `ray`.
-    #[inline(always)]
-    pub(crate) fn new(prepared: &'a PreparedScene<'_>, ray: &Ray, hit: &Hit) -> Self {
-        let point = prepared.structure().surface_point(ray, hit);
-        let material = prepared.material_of(hit.primitive);
-        let outside = ray.direction.dot(point.normal) <= 0.0;
-        let geometric_normal = if outside { point.normal } else { -point.normal };
-        let mut surface = Self {
-            point,
-            material,
-            outside,
-            geometric_normal,
-            normal: geometric_normal,
-            diffuse: material.pattern.color(material.diffuse, point.position),
-        };
-
-        // Interpolate what the mesh gives per vertex.
-        if let Which::Triangle(triangle) = prepared.which(hit.primitive) {
-            let mesh = &prepared.scene().mesh;
-            if !(mesh.normals.is_empty() && mesh.colors.is_empty()) {
-                let corners = mesh.triangles.triangles()[triangle as usize];
-                if let Some(normal) = interpolate(&mesh.normals, corners, hit) {
-                    surface.bend_normal(normal);
-                }
-                if let Some(color) = interpolate(&mesh.colors, corners, hit) {
-                    surface.diffuse = surface.diffuse * color;
-                }
-            }
-        }
-        surface
-    }
-
-    /// Shades with an interpolated normal, turned to the side of the geometric one: files differ in which way they
-    /// point. Vertices without a normal (zero) leave the geometric one.
-    #[inline(always)]
-    fn bend_normal(&mut self, interpolated: Vec3) {
-        let normal = interpolated.normalize_or_zero();
-        let side = normal.dot(self.geometric_normal);
-        if side != 0.0 {
-            self.normal = if side < 0.0 { -normal } else { normal };
-        }
-    }
-
+impl Surface<'_> {
     /// Cosine between the normal for shading and the direction back along `direction`, at least zero: at a silhouette an
     /// interpolated normal may point away from the viewer.
     #[inline(always)]
@@ -109,9 +65,12 @@ pub(crate) fn keep_on_side(direction: Vec3, normal: Vec3) -> Vec3 {
     (direction + (SMALLEST_COSINE - cosine) * normal).normalize_or_zero()
 }
 
-/// A quantity given per vertex, at a hit; `None` where the mesh does not give it.
+/// The normal for shading: an interpolated one, of any length, turned to the side of the geometric one, for files differ in which way theirs
+/// point. Vertices without a normal (zero) leave the geometric one. Without branches and calls, so that a loop over many becomes vectors.
 #[inline(always)]
-fn interpolate(per_vertex: &[Vec3], corners: [u32; 3], hit: &Hit) -> Option<Vec3> {
-    let [a, b, c] = corners.map(|vertex| per_vertex.get(vertex as usize).copied());
-    Some((1.0 - hit.u - hit.v) * a? + hit.u * b? + hit.v * c?)
+pub(crate) fn bent_normal(interpolated: Vec3, geometric: Vec3) -> Vec3 {
+    let normal = interpolated.normalize_or_zero();
+    let side = normal.dot(geometric);
+    let turned = if side < 0.0 { -normal } else { normal };
+    if side != 0.0 { turned } else { geometric }
 }

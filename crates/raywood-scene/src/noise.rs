@@ -17,9 +17,18 @@ fn hash(x: i32, y: i32, z: i32, seed: u32) -> u32 {
 /// A pseudo-random number from 0 to 1 that belongs to a lattice cell.
 #[inline(always)]
 pub(crate) fn cell_value(x: i32, y: i32, z: i32, seed: u32) -> f32 {
-    // By way of a signed number: not all processors have vectors of the other conversion.
-    (hash(x, y, z, seed) >> 8) as i32 as f32 / 16_777_215.0
+    cell_bits(x, y, z, seed) / MOST_BITS
 }
+
+/// The same from 0 to [`MOST_BITS`], a whole number.
+#[inline(always)]
+fn cell_bits(x: i32, y: i32, z: i32, seed: u32) -> f32 {
+    // By way of a signed number: not all processors have vectors of the other conversion.
+    (hash(x, y, z, seed) >> 8) as i32 as f32
+}
+
+/// The largest number of 24 bits.
+const MOST_BITS: f32 = 16_777_215.0;
 
 /// Perlin's fade curve: first and second derivatives vanish at 0 and 1, so that cells join without a crease.
 #[inline(always)]
@@ -46,26 +55,23 @@ fn split(x: f32) -> (i32, f32) {
     (floor as i32, x - floor)
 }
 
-/// Value noise in space, -1 to 1: random values on the unit lattice, blended smoothly.
-///
-/// Arrays of the eight corners, x fastest, so that the compiler can make vectors of them.
+/// Value noise in space, -1 to 1: random values on the unit lattice, blended smoothly. Written out corner by corner, without loops, so that a
+/// loop over many points becomes vectors.
 #[inline(always)]
 pub(crate) fn value3(p: Vec3, seed: u32) -> f32 {
     let ((xi, xf), (yi, yf), (zi, zf)) = (split(p.x), split(p.y), split(p.z));
     let (u, v, w) = (fade(xf), fade(yf), fade(zf));
-    let mut corners = [0.0; 8];
-    for (number, value) in corners.iter_mut().enumerate() {
-        let bit = |place: usize| (number >> place & 1) as i32;
-        let (x, y, z) = (xi.wrapping_add(bit(0)), yi.wrapping_add(bit(1)), zi.wrapping_add(bit(2)));
-        *value = cell_value(x, y, z, seed);
-    }
-    let mut edges = [0.0; 4];
-    for (number, value) in edges.iter_mut().enumerate() {
-        *value = mix(corners[2 * number], corners[2 * number + 1], u);
-    }
-    let faces = [mix(edges[0], edges[1], v), mix(edges[2], edges[3], v)];
-    2.0 * mix(faces[0], faces[1], w) - 1.0
+    let corner =
+        |x, y, z| cell_bits(xi.wrapping_add(x), yi.wrapping_add(y), zi.wrapping_add(z), seed);
+    let near =
+        mix(mix(corner(0, 0, 0), corner(1, 0, 0), u), mix(corner(0, 1, 0), corner(1, 1, 0), u), v);
+    let far =
+        mix(mix(corner(0, 0, 1), corner(1, 0, 1), u), mix(corner(0, 1, 1), corner(1, 1, 1), u), v);
+    mix(near, far, w) * (2.0 / MOST_BITS) - 1.0
 }
+
+/// How many points noise is computed for at once.
+pub(crate) const LANES: usize = 16;
 
 /// Fractal noise in space, about -1 to 1: octaves of [`value3`], each at twice the frequency and half the height.
 #[inline(always)]
@@ -73,11 +79,31 @@ pub(crate) fn fractal3(p: Vec3, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut height, mut q) = (0.0, 0.5, p);
     for octave in 0..octaves {
         sum += height * value3(q, seed.wrapping_add(octave));
-        // A little off two, and turned, so that the octaves' lattices never line up.
-        q = Vec3::new(1.6 * q.x + 1.2 * q.z, 2.03 * q.y, 1.6 * q.z - 1.2 * q.x);
+        q = next_octave(q);
         height *= 0.5;
     }
     sum
+}
+
+/// [`fractal3`] at many points, given by columns.
+#[inline(always)]
+pub(crate) fn fractal3_lanes(p: &[[f32; LANES]; 3], octaves: u32, seed: u32) -> [f32; LANES] {
+    let (mut sums, mut height, mut q) = ([0.0; LANES], 0.5, *p);
+    for octave in 0..octaves {
+        for lane in 0..LANES {
+            let point = Vec3::new(q[0][lane], q[1][lane], q[2][lane]);
+            sums[lane] += height * value3(point, seed.wrapping_add(octave));
+            [q[0][lane], q[1][lane], q[2][lane]] = next_octave(point).to_array();
+        }
+        height *= 0.5;
+    }
+    sums
+}
+
+/// Where the next octave of fractal noise is read: a little off twice the frequency, and turned, so that the octaves' lattices never line up.
+#[inline(always)]
+fn next_octave(q: Vec3) -> Vec3 {
+    Vec3::new(1.6 * q.x + 1.2 * q.z, 2.03 * q.y, 1.6 * q.z - 1.2 * q.x)
 }
 
 /// Gradient noise in the plane, about -1 to 1, and its two derivatives.

@@ -173,20 +173,6 @@ impl Geometry for Spheres {
 
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let (center, radius) = self.spheres[hit.primitive as usize];
-
-        // The point on the ray is as wrong as the ray is long; pushed onto the sphere it is as exact as the radius.
-        let (o, d, c) = (ray.origin.to_array(), ray.direction.to_array(), center.to_array());
-        let n = [0, 1, 2]
-            .map(|i| f64::from(o[i]) + f64::from(hit.t) * f64::from(d[i]) - f64::from(c[i]));
-        let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-        let normal = Vec3::from(n.map(|x| (x / length) as f32));
-        let position = Vec3::from(
-            [0, 1, 2].map(|i| (f64::from(c[i]) + n[i] / length * f64::from(radius)) as f32),
-        );
-        SurfacePoint {
-            position,
-            normal,
-            clearance: 4.0 * f32::EPSILON * (center.abs().max_element() + radius),
-        }
+        SurfacePoint::on_sphere(center, radius, ray.origin, ray.direction, hit.t)
     }
 }

@@ -162,36 +162,6 @@ impl Geometry for TriangleMesh {
 
     #[inline(always)]
     fn surface_point(&self, _ray: &Ray, hit: &Hit) -> SurfacePoint {
-        let [p0, p1, p2] = self.corners(hit.primitive);
-        let position = (1.0 - hit.u - hit.v) * p0 + hit.u * p1 + hit.v * p2;
-
-        let largest_coordinate = p0.abs().max(p1.abs()).max(p2.abs()).max_element();
-        SurfacePoint {
-            position,
-            normal: unit_normal([p0, p1, p2]),
-            clearance: CLEARANCE * largest_coordinate,
-        }
-    }
-}
-
-/// The clearance of a spawned ray per unit of the triangle's largest coordinate: 12 roundings. The position is off by at most
-/// 9 of them along the normal, and the next ray's test of the triangle is exact where it matters: `docs/numerics.md`.
-const CLEARANCE: f32 = 6.0 * f32::EPSILON;
-
-/// The unit normal of a triangle, zero if it has no area. In double precision, where the product of two tiny or huge edges neither vanishes
-/// nor overflows and slivers keep their direction.
-#[inline(always)]
-fn unit_normal(corners: [Vec3; 3]) -> Vec3 {
-    // No `map` of arrays, which the compiler does not always inline.
-    let [p0, p1, p2] = corners;
-    let difference = |a: f32, b: f32| f64::from(a) - f64::from(b);
-    let edge = |p: Vec3| [difference(p.x, p0.x), difference(p.y, p0.y), difference(p.z, p0.z)];
-    let (a, b) = (edge(p1), edge(p2));
-    let n = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-    if length > 0.0 {
-        Vec3::new((n[0] / length) as f32, (n[1] / length) as f32, (n[2] / length) as f32)
-    } else {
-        Vec3::ZERO
+        SurfacePoint::on_triangle(self.corners(hit.primitive), hit.u, hit.v)
     }
 }

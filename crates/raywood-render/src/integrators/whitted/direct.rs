@@ -6,6 +6,7 @@ use raywood_scene::Rgb;
 use super::coloured::ColouredShadows;
 use super::lit_points::{LitPoint, LitPoints, SendShadowRays, ShadowRays};
 use super::queue::WAVE;
+use super::surfaces::Surfaces;
 use crate::integrators::Frame;
 use crate::lights::Lights;
 use crate::prepared::PreparedScene;
@@ -30,7 +31,6 @@ pub(super) struct DirectLight {
 impl DirectLight {
     /// Forgets everything and makes room for so many lights.
     pub(super) fn reset(&mut self, lights: usize) {
-        self.points.clear();
         self.coloured.clear();
         self.shadows.resize_with(lights, ShadowRays::default);
         for shadows in &mut self.shadows {
@@ -39,18 +39,28 @@ impl DirectLight {
         }
     }
 
-    /// Has all lights look at a point.
+    /// Forgets the surfaces of the last wave.
     #[inline(always)]
-    pub(super) fn light(&mut self, point: LitPoint) {
-        self.points.push(point);
+    pub(super) fn begin(&mut self) {
+        self.points.clear();
     }
 
-    /// Sends rays from all points to all lights that may reach them, light by light.
-    pub(super) fn send_shadow_rays(&mut self, lights: &Lights, level: SimdLevel) {
+    /// Has all lights look at a surface of the wave.
+    #[inline(always)]
+    pub(super) fn light(&mut self, surface: usize, point: LitPoint) {
+        self.points.set(surface, point);
+    }
+
+    /// Sends rays from all surfaces of the wave to all lights that may reach them, light by light.
+    pub(super) fn send_shadow_rays(
+        &mut self,
+        lights: &Lights,
+        surfaces: &Surfaces,
+        level: SimdLevel,
+    ) {
         for (light, shadows) in lights.directed.iter().zip(&mut self.shadows) {
-            level.run(SendShadowRays { light, points: &self.points, shadows });
+            level.run(SendShadowRays { light, surfaces, points: &self.points, shadows });
         }
-        self.points.clear();
     }
 
     /// Traces the shadow rays of the lights that have at least `fewest`, and adds the light that arrives. What may have passed something transparent

@@ -3,52 +3,34 @@
 use raywood::{Vec3, Vectorized};
 use raywood_scene::{Light, LightKind, Rgb};
 
+use super::columns::{Column, Columns, ZERO, get, set};
 use super::queue::WAVE;
+use super::surfaces::Surfaces;
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::power::power;
 use crate::shading::light_cosine;
 
-/// A point that lights may reach.
+/// What a point does with light that reaches it.
 pub(super) struct LitPoint {
     /// The pixel of the tile that it is seen in.
     pub(super) pixel: u32,
-    pub(super) position: Vec3,
-    /// Where shadow rays start.
-    pub(super) origin: Vec3,
-    /// Unit normals on the viewer's side.
-    pub(super) geometric_normal: Vec3,
-    pub(super) normal: Vec3,
     /// What light scattered in all directions, and in the highlight, counts in the pixel.
     pub(super) diffuse: Rgb,
     pub(super) specular: Rgb,
     /// The exponent of the highlight, if there is one.
     pub(super) shininess: Option<f32>,
-    /// The direction that it is seen in, unit length.
-    pub(super) view: Vec3,
 }
 
-/// A number for each point.
-type Column = [f32; WAVE];
-
-/// A vector for each point.
-type Columns = [Column; 3];
-
-const ZERO: Columns = [[0.0; WAVE]; 3];
-
-/// The points of one wave, at most.
+/// What the surfaces of one wave do with light that reaches them, number for number.
 pub(super) struct LitPoints {
-    count: usize,
     /// Whether some have a highlight.
     shiny: bool,
     pixels: [u32; WAVE],
-    positions: Columns,
-    origins: Columns,
-    geometric_normals: Columns,
-    normals: Columns,
+    /// One where light does anything at all, else zero.
+    answering: Column,
     diffuse: Columns,
     specular: Columns,
     shininess: Column,
-    views: Columns,
 }
 
 /// The shadow rays of one light: all go to one point, or in one direction, so that only where they start is written down.
@@ -62,63 +44,42 @@ pub(super) struct ShadowRays {
 impl Default for LitPoints {
     fn default() -> Self {
         Self {
-            count: 0,
             shiny: false,
             pixels: [0; WAVE],
-            positions: ZERO,
-            origins: ZERO,
-            geometric_normals: ZERO,
-            normals: ZERO,
+            answering: [0.0; WAVE],
             diffuse: ZERO,
             specular: ZERO,
             shininess: [0.0; WAVE],
-            views: ZERO,
         }
     }
 }
 
 impl LitPoints {
-    /// Forgets all points.
+    /// Forgets all points: light does nothing anywhere.
+    #[inline(always)]
     pub(super) fn clear(&mut self) {
-        self.count = 0;
         self.shiny = false;
+        self.answering = [0.0; WAVE];
     }
 
-    /// Adds a point. There is room for one for each ray of a wave.
+    /// Tells what a surface does with light.
     #[inline(always)]
-    pub(super) fn push(&mut self, point: LitPoint) {
-        let number = self.count;
+    pub(super) fn set(&mut self, number: usize, point: LitPoint) {
         self.pixels[number] = point.pixel;
-        set(&mut self.positions, number, point.position);
-        set(&mut self.origins, number, point.origin);
-        set(&mut self.geometric_normals, number, point.geometric_normal);
-        set(&mut self.normals, number, point.normal);
+        self.answering[number] = 1.0;
         set(&mut self.diffuse, number, point.diffuse);
-        set(&mut self.views, number, point.view);
         self.shiny |= point.shininess.is_some();
         // Without a highlight any exponent will do.
         let specular = if point.shininess.is_some() { point.specular } else { Rgb::ZERO };
         set(&mut self.specular, number, specular);
         self.shininess[number] = point.shininess.unwrap_or(1.0);
-        self.count += 1;
     }
-}
-
-#[inline(always)]
-fn set(columns: &mut Columns, number: usize, v: Vec3) {
-    columns[0][number] = v.x;
-    columns[1][number] = v.y;
-    columns[2][number] = v.z;
-}
-
-#[inline(always)]
-fn get(columns: &Columns, number: usize) -> Vec3 {
-    Vec3::new(columns[0][number], columns[1][number], columns[2][number])
 }
 
 /// Sends rays from all points to a light that may reach them.
 pub(super) struct SendShadowRays<'a> {
     pub(super) light: &'a Light,
+    pub(super) surfaces: &'a Surfaces,
     pub(super) points: &'a LitPoints,
     pub(super) shadows: &'a mut ShadowRays,
 }
@@ -154,18 +115,18 @@ impl Vectorized for SendShadowRays<'_> {
 impl SendShadowRays<'_> {
     #[inline(always)]
     fn send(self, illuminate: impl Fn(Vec3) -> Illumination) {
-        let Self { points, shadows, .. } = self;
-        let count = points.count.min(WAVE);
+        let Self { surfaces, points, shadows, .. } = self;
+        let count = surfaces.count();
 
         // What the light brings to each point: Lambert's law.
         let mut cosines = [0.0; WAVE];
         let mut brought = ZERO;
         for (number, cosine_there) in cosines[..count].iter_mut().enumerate() {
-            let at_point = illuminate(get(&points.positions, number));
-            let normal = get(&points.normals, number);
-            let geometric_normal = get(&points.geometric_normals, number);
+            let at_point = illuminate(get(&surfaces.positions, number));
+            let normal = get(&surfaces.normals, number);
+            let geometric_normal = get(&surfaces.geometric_normals, number);
             let cosine = light_cosine(at_point.direction, normal, geometric_normal);
-            *cosine_there = if at_point.shines { cosine } else { 0.0 };
+            *cosine_there = points.answering[number] * if at_point.shines { cosine } else { 0.0 };
             let light = get(&points.diffuse, number) * at_point.intensity;
             set(&mut brought, number, cosine * light);
         }
@@ -173,10 +134,10 @@ impl SendShadowRays<'_> {
         // Blinn's highlight (1977) around the direction halfway to the eye.
         if points.shiny {
             for (number, cosine) in cosines[..count].iter().enumerate() {
-                let at_point = illuminate(get(&points.positions, number));
-                let halfway = at_point.direction - get(&points.views, number);
+                let at_point = illuminate(get(&surfaces.positions, number));
+                let halfway = at_point.direction - get(&surfaces.directions, number);
                 let length = halfway.length();
-                let aligned = halfway.dot(get(&points.normals, number)) / length;
+                let aligned = halfway.dot(get(&surfaces.normals, number)) / length;
                 let aligned = if aligned > 0.0 { aligned } else { 0.0 };
                 let factor = *cosine * power(aligned, points.shininess[number]);
                 let light = get(&points.specular, number) * at_point.intensity;
@@ -193,7 +154,7 @@ impl SendShadowRays<'_> {
             lit_count += usize::from(*cosine > 0.0);
         }
         let lit = lit[..lit_count].iter().map(|&number| usize::from(number));
-        shadows.origins.extend(lit.clone().map(|number| get(&points.origins, number)));
+        shadows.origins.extend(lit.clone().map(|number| get(&surfaces.origins, number)));
         shadows.light.extend(lit.map(|number| (points.pixels[number], get(&brought, number))));
     }
 }

@@ -7,11 +7,13 @@
 //! shadow rays of a light. Structures trace such rays as packets.
 
 mod coloured;
+mod columns;
 mod direct;
 mod lit_points;
 mod primary;
 mod queue;
 mod shade;
+mod surfaces;
 mod waves;
 
 use std::cell::RefCell;

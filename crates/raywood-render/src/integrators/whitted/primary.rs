@@ -1,9 +1,9 @@
 //! The primary rays of a tile, one of each pixel at a time.
 
-use raywood::Vectorized;
+use raywood::{Hit, HitColumns, Vec3, Vectorized};
 use raywood_scene::Rgb;
 
-use super::queue::{Path, Queue, WAVE};
+use super::queue::{Path, Traced, WAVE};
 use crate::camera_rays::CameraRays;
 use crate::sampling::PixelSamples;
 use crate::tiles::Tile;
@@ -12,6 +12,8 @@ use crate::tiles::Tile;
 #[derive(Default)]
 pub(super) struct PrimaryRays {
     pixels: Vec<Pixel>,
+    /// Where one ray of each goes.
+    pub(super) directions: Vec<Vec3>,
 }
 
 /// A pixel and where its primary rays pass.
@@ -40,12 +42,11 @@ impl PrimaryRays {
     }
 }
 
-/// Makes ray `index` of every pixel the next wave.
+/// Finds out where ray `index` of every pixel goes.
 pub(super) struct SendPrimary<'a> {
     pub(super) camera: &'a CameraRays,
-    pub(super) primary: &'a PrimaryRays,
+    pub(super) primary: &'a mut PrimaryRays,
     pub(super) index: u32,
-    pub(super) wave: &'a mut Queue,
 }
 
 impl Vectorized for SendPrimary<'_> {
@@ -53,8 +54,7 @@ impl Vectorized for SendPrimary<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { camera, primary: PrimaryRays { pixels }, index, wave } = self;
-        wave.clear();
+        let Self { camera, primary: PrimaryRays { pixels, directions: rays }, index } = self;
 
         // Where the rays pass, in columns.
         let count = pixels.len().min(WAVE);
@@ -80,13 +80,43 @@ impl Vectorized for SendPrimary<'_> {
                 direction.to_array();
         }
         let [x, y, z] = &directions;
-        wave.rays
-            .extend((0..count).map(|number| camera.ray_along([x[number], y[number], z[number]])));
+        rays.clear();
+        rays.extend((0..count).map(|number| Vec3::new(x[number], y[number], z[number])));
+    }
+}
+
+/// Primary rays that were traced.
+pub(super) struct TracedPrimary<'a> {
+    pub(super) eye: Vec3,
+    pub(super) primary: &'a PrimaryRays,
+    pub(super) hits: &'a HitColumns,
+}
+
+impl Traced for TracedPrimary<'_> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.primary.directions.len()
+    }
+
+    #[inline(always)]
+    fn origin(&self, _ray: usize) -> Vec3 {
+        self.eye
+    }
+
+    #[inline(always)]
+    fn direction(&self, ray: usize) -> Vec3 {
+        self.primary.directions[ray]
+    }
+
+    #[inline(always)]
+    fn path(&self, ray: usize) -> Path {
         // In air. (An eye inside glass is noticed when the ray leaves it.)
-        wave.paths.extend(pixels[..count].iter().map(|pixel| Path {
-            pixel: pixel.number,
-            weight: Rgb::ONE,
-            absorption: Rgb::ZERO,
-        }));
+        let pixel = self.primary.pixels[ray].number;
+        Path { pixel, weight: Rgb::ONE, absorption: Rgb::ZERO }
+    }
+
+    #[inline(always)]
+    fn hit(&self, ray: usize) -> Option<Hit> {
+        self.hits.get(ray)
     }
 }

@@ -1,6 +1,6 @@
 //! Rays that wait for their turn, sorted by what they are: rays that belong together are fastest traced together.
 
-use raywood::Ray;
+use raywood::{Hit, Ray, Vec3};
 use raywood_scene::Rgb;
 
 /// How many rays are traced together: as many as structures take in one packet.
@@ -15,6 +15,53 @@ pub(super) struct Path {
     pub(super) weight: Rgb,
     /// Absorption of what the ray runs through, per unit of length.
     pub(super) absorption: Rgb,
+}
+
+/// Rays that were traced, and what they hit.
+pub(super) trait Traced {
+    /// How many rays.
+    fn len(&self) -> usize;
+    /// Where a ray started.
+    fn origin(&self, ray: usize) -> Vec3;
+    /// Where it went, unit length.
+    fn direction(&self, ray: usize) -> Vec3;
+    /// How it came here.
+    fn path(&self, ray: usize) -> Path;
+    /// What it hit.
+    fn hit(&self, ray: usize) -> Option<Hit>;
+}
+
+/// Rays of a queue that were traced.
+pub(super) struct TracedQueue<'a> {
+    pub(super) queue: &'a Queue,
+    pub(super) hits: &'a [Option<Hit>],
+}
+
+impl Traced for TracedQueue<'_> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.hits.len()
+    }
+
+    #[inline(always)]
+    fn origin(&self, ray: usize) -> Vec3 {
+        self.queue.rays[ray].origin
+    }
+
+    #[inline(always)]
+    fn direction(&self, ray: usize) -> Vec3 {
+        self.queue.rays[ray].direction
+    }
+
+    #[inline(always)]
+    fn path(&self, ray: usize) -> Path {
+        self.queue.paths[ray]
+    }
+
+    #[inline(always)]
+    fn hit(&self, ray: usize) -> Option<Hit> {
+        self.hits[ray]
+    }
 }
 
 /// Rays and the paths that they go on.

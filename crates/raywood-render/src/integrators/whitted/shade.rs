@@ -1,11 +1,13 @@
 //! Shading: what light comes back along a ray from what it hit, and which rays follow.
 
-use raywood::{Hit, Ray, Vec3, Vectorized};
+use raywood::{Ray, Vec3, Vectorized};
 use raywood_scene::Rgb;
 
+use super::columns::get;
 use super::direct::DirectLight;
 use super::lit_points::LitPoint;
-use super::queue::{Path, Queue};
+use super::queue::{Path, Queue, Traced};
+use super::surfaces::Surfaces;
 use crate::fresnel::{Interface, dielectric, refract, schlick};
 use crate::integrators::Frame;
 use crate::shading::{Surface, keep_on_side};
@@ -25,35 +27,38 @@ pub(super) struct Shader<'a> {
     pub(super) goes_on: bool,
 }
 
-/// A wave that was traced.
-pub(super) struct ShadeWave<'a, 'b> {
+/// A wave that was traced, and memory for what it hit.
+pub(super) struct ShadeWave<'a, 'b, W> {
     pub(super) shader: Shader<'a>,
-    pub(super) wave: &'b Queue,
-    pub(super) hits: &'b [Option<Hit>],
+    pub(super) wave: W,
+    pub(super) surfaces: &'b mut Surfaces,
 }
 
-impl Vectorized for ShadeWave<'_, '_> {
+impl<W: Traced> Vectorized for ShadeWave<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Self { mut shader, wave, hits } = self;
-        for ((ray, path), hit) in wave.rays.iter().zip(&wave.paths).zip(hits) {
-            shader.shade(ray, path, hit.as_ref());
+        let Self { mut shader, wave, surfaces } = self;
+        let scene = shader.frame.scene;
+        surfaces.find(scene, &wave, |ray| {
+            let path = wave.path(ray);
+            shader.add(&path, path.weight * scene.background(wave.direction(ray)));
+        });
+        shader.direct.begin();
+        for number in 0..surfaces.count() {
+            shader.shade(&wave, surfaces, number);
         }
     }
 }
 
 impl Shader<'_> {
-    /// Adds the light that comes back along a ray from what it hit, and sends further rays.
+    /// Adds the light that comes back along a ray from the surface that it hit, and sends further rays.
     #[inline(always)]
-    pub(super) fn shade(&mut self, ray: &Ray, path: &Path, hit: Option<&Hit>) {
-        let frame = self.frame;
-        let Some(hit) = hit else {
-            self.add(path, path.weight * frame.scene.background(ray.direction));
-            return;
-        };
-        let surface = Surface::new(frame.scene, ray, hit);
+    fn shade(&mut self, wave: &impl Traced, surfaces: &Surfaces, number: usize) {
+        let surface = surfaces.get(self.frame.scene, number);
+        let direction = get(&surfaces.directions, number);
+        let path = wave.path(surfaces.ray(number));
         let material = surface.material;
 
         // Absorb on the way. From the inside of a surface the way led through its material, whatever came before.
@@ -62,11 +67,11 @@ impl Shader<'_> {
         } else {
             path.absorption
         };
-        let weight = path.weight * transmittance(absorption, hit.t);
-        let here = Path { weight, absorption, ..*path };
+        let weight = path.weight * transmittance(absorption, surfaces.distance(number));
+        let here = Path { weight, absorption, ..path };
 
         // Share out the light between mirror and body.
-        let cos_view = surface.cos_towards(ray.direction);
+        let cos_view = surface.cos_towards(direction);
         let (mirror, interface) = if material.transmissive {
             let interface = dielectric(cos_view, eta(&surface));
             (Rgb::splat(interface.reflectance), Some(interface))
@@ -76,14 +81,13 @@ impl Shader<'_> {
             (Rgb::ZERO, None)
         };
 
-        // All rays but refracted ones leave the surface on this side.
-        let origin = surface.point.origin_towards(surface.geometric_normal);
-        self.lights(&surface, ray, &here, Rgb::ONE - mirror, origin);
+        self.lights(&surface, number, &here, Rgb::ONE - mirror);
         if mirror != Rgb::ZERO {
-            self.reflect(&surface, ray, &here, mirror, origin);
+            // All rays but refracted ones leave the surface on this side.
+            self.reflect(&surface, direction, &here, mirror, get(&surfaces.origins, number));
         }
         if let Some(interface) = interface {
-            self.refract(&surface, ray, &here, interface);
+            self.refract(&surface, direction, &here, interface);
         }
     }
 
@@ -95,24 +99,20 @@ impl Shader<'_> {
     /// Adds what the surface sends out by itself and of the ambient light, and has the other lights look at it. `body` is the share that is
     /// not mirrored.
     #[inline(always)]
-    fn lights(&mut self, surface: &Surface<'_>, ray: &Ray, here: &Path, body: Rgb, origin: Vec3) {
+    fn lights(&mut self, surface: &Surface<'_>, number: usize, here: &Path, body: Rgb) {
         let material = surface.material;
         let diffuse = here.weight * (body * surface.diffuse);
         self.add(here, here.weight * material.emission + self.frame.lights.ambient * diffuse);
         if !material.shiny && diffuse == Rgb::ZERO {
             return;
         }
-        self.direct.light(LitPoint {
+        let point = LitPoint {
             pixel: here.pixel,
-            position: surface.point.position,
-            origin,
-            geometric_normal: surface.geometric_normal,
-            normal: surface.normal,
             diffuse,
-            view: ray.direction,
             specular: here.weight * material.specular,
             shininess: if material.shiny { Some(material.shininess) } else { None },
-        });
+        };
+        self.direct.light(number, point);
     }
 
     /// Follows the light that the surface mirrors, if it is worth a ray.
@@ -120,7 +120,7 @@ impl Shader<'_> {
     fn reflect(
         &mut self,
         surface: &Surface<'_>,
-        ray: &Ray,
+        direction: Vec3,
         here: &Path,
         mirror: Rgb,
         origin: Vec3,
@@ -128,22 +128,27 @@ impl Shader<'_> {
         let Some(next) = self.next(here, mirror, here.absorption) else { return };
         self.counts.reflection += 1;
         let [reflected, _] = &mut *self.followers;
-        reflected.push(Ray::new(origin, surface.mirrored(ray.direction)), next);
+        reflected.push(Ray::new(origin, surface.mirrored(direction)), next);
     }
 
     /// Follows the light that the surface lets through, if it is worth a ray.
     #[inline(always)]
-    fn refract(&mut self, surface: &Surface<'_>, ray: &Ray, here: &Path, interface: Interface) {
+    fn refract(
+        &mut self,
+        surface: &Surface<'_>,
+        direction: Vec3,
+        here: &Path,
+        interface: Interface,
+    ) {
         let share = (1.0 - interface.reflectance) * surface.material.transmission;
         let absorption = if surface.outside { surface.material.absorption } else { Rgb::ZERO };
         let Some(next) = self.next(here, share, absorption) else { return };
         self.counts.refraction += 1;
         // Thin surfaces let rays straight on, whatever the normals say.
         let direction = if surface.material.ior == 1.0 {
-            ray.direction
+            direction
         } else {
-            let bent =
-                refract(ray.direction, surface.normal, eta(surface), interface.cos_transmitted);
+            let bent = refract(direction, surface.normal, eta(surface), interface.cos_transmitted);
             keep_on_side(bent.normalize_or_zero(), -surface.geometric_normal)
         };
         let [_, refracted] = &mut *self.followers;

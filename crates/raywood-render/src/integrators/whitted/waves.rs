@@ -1,11 +1,12 @@
 //! The order in which the rays of a tile are traced.
 
-use raywood::{Hit, SimdLevel};
+use raywood::{Hit, HitColumns, SimdLevel};
 
 use super::direct::DirectLight;
-use super::primary::{PrimaryRays, SendPrimary};
-use super::queue::{Queue, WAVE, Waiting};
+use super::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use super::queue::{Queue, Traced, TracedQueue, WAVE, Waiting};
 use super::shade::{ShadeWave, Shader};
+use super::surfaces::Surfaces;
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
@@ -14,9 +15,11 @@ use crate::tiles::{Tile, TilePixels};
 #[derive(Default)]
 pub(super) struct Scratch {
     primary: PrimaryRays,
+    primary_hits: HitColumns,
     waiting: Waiting,
     wave: Queue,
     hits: Vec<Option<Hit>>,
+    surfaces: Box<Surfaces>,
     direct: DirectLight,
 }
 
@@ -54,8 +57,7 @@ impl<'a> Waves<'a> {
             // One ray of each pixel at a time: the more samples, the more waves, but none wider.
             self.scratch.primary.reset(tile, square, samples);
             for index in 0..samples {
-                self.send_primary(index);
-                self.trace_wave(0);
+                self.trace_primary(index);
                 while let Some(depth) = self.scratch.waiting.take_full(&mut self.scratch.wave) {
                     self.trace_wave(depth);
                 }
@@ -74,11 +76,26 @@ impl<'a> Waves<'a> {
         self.pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples as f32) * *pixel);
     }
 
-    /// Makes ray `index` of every pixel the next wave.
-    fn send_primary(&mut self, index: u32) {
-        let Scratch { primary, wave, .. } = &mut *self.scratch;
+    /// Traces ray `index` of every pixel, and shades what they hit.
+    fn trace_primary(&mut self, index: u32) {
+        let Scratch { primary, primary_hits: hits, waiting, surfaces, direct, .. } =
+            &mut *self.scratch;
+        let Frame { scene, camera, .. } = self.frame;
         self.counts.primary += primary.len() as u64;
-        self.level.run(SendPrimary { camera: &self.frame.camera, primary, index, wave });
+        self.level.run(SendPrimary { camera, primary, index });
+        let eye = camera.eye();
+        scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+
+        let shader = Shader {
+            frame: self.frame,
+            pixels: self.pixels,
+            counts: &mut self.counts,
+            direct,
+            followers: waiting.at(1),
+            goes_on: 0 < self.frame.options.max_depth,
+        };
+        shade(shader, TracedPrimary { eye, primary, hits }, surfaces, self.level);
+        self.add_direct_light(FEWEST);
     }
 
     /// Makes rays that wait the next wave and tells their depth.
@@ -89,7 +106,7 @@ impl<'a> Waves<'a> {
 
     /// Traces the wave, whose rays have the same depth, shades what they hit, and has the rays that follow wait for their turn.
     fn trace_wave(&mut self, depth: u32) {
-        let Scratch { waiting, wave, hits, direct, .. } = &mut *self.scratch;
+        let Scratch { waiting, wave, hits, surfaces, direct, .. } = &mut *self.scratch;
         hits.resize(wave.rays.len(), None);
         self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
 
@@ -101,8 +118,7 @@ impl<'a> Waves<'a> {
             followers: waiting.at(depth + 1),
             goes_on: depth < self.frame.options.max_depth,
         };
-        self.level.run(ShadeWave { shader, wave, hits });
-        direct.send_shadow_rays(self.frame.lights, self.level);
+        shade(shader, TracedQueue { queue: wave, hits }, surfaces, self.level);
         self.add_direct_light(FEWEST);
     }
 
@@ -114,3 +130,11 @@ impl<'a> Waves<'a> {
 
 /// Fewer shadow rays of a light wait for others, of any part of the tile.
 const FEWEST: usize = WAVE;
+
+/// Shades what a wave hit and sends shadow rays from there.
+fn shade(shader: Shader<'_>, wave: impl Traced, surfaces: &mut Surfaces, level: SimdLevel) {
+    let Shader { frame, pixels, counts, direct, followers, goes_on } = shader;
+    let shader = Shader { frame, pixels, counts, direct: &mut *direct, followers, goes_on };
+    level.run(ShadeWave { shader, wave, surfaces: &mut *surfaces });
+    direct.send_shadow_rays(frame.lights, surfaces, level);
+}

@@ -1,0 +1,273 @@
+//! The surfaces that a wave hit, in columns, ready for shading: what all hits need is computed with vectors.
+
+use raywood::{SurfacePoint, Vec3};
+use raywood_scene::{Pattern, Rgb};
+
+use super::columns::{Column, Columns, ZERO, get, set};
+use super::queue::{Traced, WAVE};
+use crate::PreparedScene;
+use crate::prepared::{SurfaceMaterial, Which};
+use crate::shading::{Surface, bent_normal};
+
+/// The surfaces that the rays of one wave hit, in the order of the rays; those that hit nothing are left out.
+pub(super) struct Surfaces {
+    count: usize,
+    /// The number of the ray in its wave.
+    rays: [u32; WAVE],
+    /// The number of the material in its scene.
+    materials: [u32; WAVE],
+    /// Where along the ray, and where on the triangle.
+    distances: Column,
+    weights: [Column; 2],
+    /// The directions of the rays, unit length.
+    pub(super) directions: Columns,
+    /// The corners of the triangles, and what the mesh gives there.
+    corners: [Columns; 3],
+    corner_normals: [Columns; 3],
+    pub(super) positions: Columns,
+    /// The surfaces' own normals.
+    own_normals: Columns,
+    clearances: Column,
+    /// Where rays start that leave to the side that the wave came from.
+    pub(super) origins: Columns,
+    /// Unit normals on the side that the wave came from: the geometric ones, those for shading.
+    pub(super) geometric_normals: Columns,
+    pub(super) normals: Columns,
+    /// The diffuse colours there.
+    diffuse: Columns,
+}
+
+impl Default for Surfaces {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            rays: [0; WAVE],
+            materials: [0; WAVE],
+            distances: [0.0; WAVE],
+            weights: [[0.0; WAVE]; 2],
+            directions: ZERO,
+            corners: [ZERO; 3],
+            corner_normals: [ZERO; 3],
+            positions: ZERO,
+            own_normals: ZERO,
+            clearances: [0.0; WAVE],
+            origins: ZERO,
+            geometric_normals: ZERO,
+            normals: ZERO,
+            diffuse: ZERO,
+        }
+    }
+}
+
+impl Surfaces {
+    /// How many rays hit something, at most a wave.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.count.min(WAVE)
+    }
+
+    /// The number of the ray that hit a surface.
+    #[inline(always)]
+    pub(super) fn ray(&self, number: usize) -> usize {
+        self.rays[number] as usize
+    }
+
+    /// How far along its ray a surface is.
+    #[inline(always)]
+    pub(super) fn distance(&self, number: usize) -> f32 {
+        self.distances[number]
+    }
+
+    /// A surface by itself.
+    #[inline(always)]
+    pub(super) fn get<'a>(&self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
+        let direction = get(&self.directions, number);
+        let point = SurfacePoint {
+            position: get(&self.positions, number),
+            normal: get(&self.own_normals, number),
+            clearance: self.clearances[number],
+        };
+        Surface {
+            outside: is_outside(direction, point.normal),
+            point,
+            material: scene.material(self.materials[number]),
+            geometric_normal: get(&self.geometric_normals, number),
+            normal: get(&self.normals, number),
+            diffuse: get(&self.diffuse, number),
+        }
+    }
+
+    /// Finds the surfaces that a wave hit, and has `miss` look at the rays that hit nothing.
+    #[inline(always)]
+    pub(super) fn find(
+        &mut self,
+        scene: &PreparedScene<'_>,
+        wave: &impl Traced,
+        mut miss: impl FnMut(usize),
+    ) {
+        self.gather(scene, wave, &mut miss);
+        let count = self.count();
+
+        // Where the points lie; the few on spheres, which the loop got wrong, one by one.
+        for number in 0..count {
+            let corners = [
+                get(&self.corners[0], number),
+                get(&self.corners[1], number),
+                get(&self.corners[2], number),
+            ];
+            let point = SurfacePoint::on_triangle(
+                corners,
+                self.weights[0][number],
+                self.weights[1][number],
+            );
+            set(&mut self.positions, number, point.position);
+            set(&mut self.own_normals, number, point.normal);
+            self.clearances[number] = point.clearance;
+        }
+        if !scene.scene().spheres.as_slice().is_empty() {
+            self.find_on_spheres(scene, wave);
+        }
+
+        // Turn the normals to the side that the rays came from, and move off to there.
+        for number in 0..count {
+            let normal = get(&self.own_normals, number);
+            let outside = is_outside(get(&self.directions, number), normal);
+            let turned = if outside { normal } else { -normal };
+            let position = get(&self.positions, number);
+            let point = SurfacePoint { position, normal, clearance: self.clearances[number] };
+            set(&mut self.geometric_normals, number, turned);
+            set(&mut self.origins, number, point.origin_towards(turned));
+        }
+
+        // Interpolate the normals that the mesh gives per vertex.
+        if scene.scene().mesh.normals.is_empty() {
+            self.normals = self.geometric_normals;
+        } else {
+            for number in 0..count {
+                let [u, v] = [self.weights[0][number], self.weights[1][number]];
+                let normal = (1.0 - u - v) * get(&self.corner_normals[0], number)
+                    + u * get(&self.corner_normals[1], number)
+                    + v * get(&self.corner_normals[2], number);
+                let geometric = get(&self.geometric_normals, number);
+                set(&mut self.normals, number, bent_normal(normal, geometric));
+            }
+        }
+        self.find_colors(scene, wave);
+    }
+
+    /// Gathers from all over the scene what the rays hit.
+    #[inline(always)]
+    fn gather(
+        &mut self,
+        scene: &PreparedScene<'_>,
+        wave: &impl Traced,
+        miss: &mut impl FnMut(usize),
+    ) {
+        let mesh = &scene.scene().mesh;
+        let mut count = 0;
+        for ray in 0..wave.len().min(WAVE) {
+            let Some(hit) = wave.hit(ray) else {
+                miss(ray);
+                continue;
+            };
+            self.rays[count] = ray as u32;
+            self.distances[count] = hit.t;
+            self.weights[0][count] = hit.u;
+            self.weights[1][count] = hit.v;
+            self.materials[count] = scene.material_index(hit.primitive) as u32;
+            set(&mut self.directions, count, wave.direction(ray));
+            let corners = match scene.which(hit.primitive) {
+                Which::Triangle(triangle) => mesh.triangles.triangles()[triangle as usize],
+                Which::Sphere(_) => [u32::MAX; 3],
+            };
+            let positions = mesh.triangles.positions();
+            for corner in 0..3 {
+                let vertex = corners[corner] as usize;
+                let position = positions.get(vertex).copied().unwrap_or(Vec3::ZERO);
+                set(&mut self.corners[corner], count, position);
+            }
+            if !mesh.normals.is_empty() {
+                for corner in 0..3 {
+                    let vertex = corners[corner] as usize;
+                    let normal = mesh.normals.get(vertex).copied().unwrap_or(Vec3::ZERO);
+                    set(&mut self.corner_normals[corner], count, normal);
+                }
+            }
+            count += 1;
+        }
+        self.count = count;
+    }
+
+    #[inline(always)]
+    fn find_on_spheres(&mut self, scene: &PreparedScene<'_>, wave: &impl Traced) {
+        for number in 0..self.count() {
+            let ray = self.ray(number);
+            let Some(hit) = wave.hit(ray) else { continue };
+            let Which::Sphere(sphere) = scene.which(hit.primitive) else { continue };
+            let (center, radius) = scene.scene().spheres.as_slice()[sphere as usize];
+            let (origin, direction) = (wave.origin(ray), wave.direction(ray));
+            let point = SurfacePoint::on_sphere(center, radius, origin, direction, hit.t);
+            set(&mut self.positions, number, point.position);
+            set(&mut self.own_normals, number, point.normal);
+            self.clearances[number] = point.clearance;
+        }
+    }
+
+    /// Finds the diffuse colours: those of the materials, their patterns, times what the mesh gives per vertex.
+    #[inline(always)]
+    fn find_colors(&mut self, scene: &PreparedScene<'_>, wave: &impl Traced) {
+        let mut patterned = [0; WAVE];
+        let mut left = 0;
+        for number in 0..self.count() {
+            let SurfaceMaterial { diffuse, pattern, .. } = scene.material(self.materials[number]);
+            set(&mut self.diffuse, number, *diffuse);
+            patterned[left] = number as u8;
+            left += usize::from(*pattern != Pattern::Plain);
+        }
+
+        // All points of one pattern together.
+        while left > 0 {
+            let material = self.materials[patterned[0] as usize];
+            let mut same = [0; WAVE];
+            let (mut same_count, mut others) = (0, 0);
+            let mut points = ZERO;
+            for entry in 0..left {
+                let number = patterned[entry];
+                let is_same = self.materials[number as usize] == material;
+                set(&mut points, same_count, get(&self.positions, number as usize));
+                same[same_count] = number;
+                patterned[others] = number;
+                same_count += usize::from(is_same);
+                others += usize::from(!is_same);
+            }
+            left = others;
+
+            let SurfaceMaterial { diffuse, pattern, .. } = scene.material(material);
+            let mut colors = ZERO;
+            pattern.colors(*diffuse, &points, &mut colors, same_count);
+            for (place, &number) in same[..same_count].iter().enumerate() {
+                set(&mut self.diffuse, number as usize, get(&colors, place));
+            }
+        }
+
+        let mesh = &scene.scene().mesh;
+        if !mesh.colors.is_empty() {
+            for number in 0..self.count() {
+                let Some(hit) = wave.hit(self.ray(number)) else { continue };
+                let Which::Triangle(triangle) = scene.which(hit.primitive) else { continue };
+                let [a, b, c] = mesh.triangles.triangles()[triangle as usize];
+                let color =
+                    |vertex: u32| mesh.colors.get(vertex as usize).copied().unwrap_or(Rgb::ONE);
+                let color = (1.0 - hit.u - hit.v) * color(a) + hit.u * color(b) + hit.v * color(c);
+                let diffuse = get(&self.diffuse, number) * color;
+                set(&mut self.diffuse, number, diffuse);
+            }
+        }
+    }
+}
+
+/// Whether a ray comes from the side that a surface's own normal points to.
+#[inline(always)]
+fn is_outside(direction: Vec3, normal: Vec3) -> bool {
+    direction.dot(normal) <= 0.0
+}
