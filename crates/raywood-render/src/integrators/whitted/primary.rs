@@ -29,11 +29,11 @@ impl PrimaryRays {
     /// Takes the pixels of a square of a tile.
     pub(super) fn reset(&mut self, tile: &Tile, square: [u32; 2], samples: u32) {
         self.pixels.clear();
-        self.pixels.extend(tile.pixels_in_blocks(square).map(|(number, [x, y])| Pixel {
-            number,
-            place: [x, y],
-            samples: PixelSamples::new(x, y, samples),
-        }));
+        // Not `extend`, which would step through the nested ranges from outside, pixel by pixel.
+        tile.pixels_in_blocks(square).for_each(|(number, [x, y])| {
+            let samples = PixelSamples::new(x, y, samples);
+            self.pixels.push(Pixel { number, place: [x, y], samples });
+        });
     }
 
     /// How many pixels these are.

@@ -129,7 +129,7 @@ impl<'a> Waves<'a> {
 }
 
 /// Fewer shadow rays of a light wait for others, of any part of the tile.
-const FEWEST: usize = WAVE;
+const FEWEST: usize = 4 * WAVE;
 
 /// Shades what a wave hit and sends shadow rays from there.
 fn shade(shader: Shader<'_>, wave: impl Traced, surfaces: &mut Surfaces, level: SimdLevel) {
