@@ -5,6 +5,7 @@
 
 mod bounds_overlay;
 mod camera_rays;
+mod few_boxes;
 mod film;
 pub mod fresnel;
 mod heat_map;

@@ -4,6 +4,8 @@ use raywood::{Aabb, BuildError, BuildOptions, Geometry, Joined, SimdLevel, Spher
 use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
 
+use crate::few_boxes::few_boxes;
+
 /// All surfaces of a scene: first its triangles, then its spheres.
 pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
 
@@ -136,28 +138,18 @@ impl<'a> PreparedScene<'a> {
         &self.transmissive_bounds
     }
 
-    /// One box per material that lets light through, or one around all of them if they are many.
+    /// A few boxes around all primitives that let light through.
     fn find_transmissive_bounds(&self) -> Vec<Aabb> {
         if !self.materials.iter().any(|material| material.transmissive) {
             return Vec::new();
         }
-        let mut bounds = vec![Aabb::EMPTY; self.materials.len()];
-        for primitive in 0..self.structure.geometry().len() as u32 {
-            let index = self.material_index(primitive);
-            if self.materials[index].transmissive {
-                bounds[index] = bounds[index].union(self.structure.geometry().bounds(primitive));
-            }
-        }
-        bounds.retain(|b| !b.is_empty());
-        if bounds.len() > MOST_TRANSMISSIVE_BOUNDS {
-            bounds = vec![bounds.into_iter().fold(Aabb::EMPTY, Aabb::union)];
-        }
-        bounds
+        let geometry = self.structure.geometry();
+        let transmissive =
+            |primitive: &u32| self.materials[self.material_index(*primitive)].transmissive;
+        let primitives = (0..geometry.len() as u32).filter(transmissive);
+        few_boxes(primitives.map(|primitive| geometry.bounds(primitive)).collect())
     }
 }
-
-/// More boxes than this cost a shadow ray more than they save.
-const MOST_TRANSMISSIVE_BOUNDS: usize = 8;
 
 /// Which kind of surface a primitive is, and its number among those.
 #[derive(Clone, Copy, Debug)]
