@@ -1,6 +1,6 @@
 //! Light that comes straight from the lights, if nothing is in the way.
 
-use raywood::{Ray, SimdLevel, Vec3};
+use raywood::{Aabb, Ray, SimdLevel, Vec3};
 use raywood_scene::Rgb;
 
 use super::coloured::ColouredShadows;
@@ -23,8 +23,7 @@ pub(super) struct DirectLight {
     /// The rays of a light that has only a direction.
     parallel: Vec<Ray>,
     blocked: Vec<bool>,
-    /// Of the rays of a light those that may meet something transparent: not zero.
-    may_pass: Vec<u32>,
+    suspects: Suspects,
     coloured: ColouredShadows,
 }
 
@@ -75,7 +74,7 @@ impl DirectLight {
     ) {
         let opaque = frame.options.opaque_shadows;
         let bounds = if opaque { &[] } else { frame.scene.transmissive_bounds() };
-        let Self { shadows, parallel, blocked, may_pass, coloured, .. } = self;
+        let Self { shadows, parallel, blocked, suspects, coloured, .. } = self;
         for (number, (light, shadows)) in frame.lights.directed.iter().zip(shadows).enumerate() {
             if shadows.origins.len() < fewest {
                 continue;
@@ -87,33 +86,69 @@ impl DirectLight {
             let aim = Aim::at(light);
             blocked.resize(count, false);
             ask_whether_blocked(frame.scene, aim, origins, parallel, blocked);
-            may_pass.clear();
-            may_pass.resize(count, 0);
-            if !bounds.is_empty() {
-                level.run(LightMayPass { bounds, aim, origins, answers: may_pass });
-            }
-
             counts.shadow += count as u64;
-            let answers = blocked.iter().zip(&*may_pass);
-            let rays = origins.iter().zip(&shadows.light[..count]);
-            for ((origin, (pixel, brought)), (blocked, may_pass)) in rays.zip(answers) {
-                if *blocked && *may_pass != 0 {
-                    // Something transparent may be all that is in the way. The ray counts again, surface by surface.
-                    counts.shadow -= 1;
-                    coloured.push(aim.ray_from(*origin), number, *pixel, *brought);
-                }
+            for ((pixel, brought), blocked) in shadows.light[..count].iter().zip(&*blocked) {
                 // No branch, which would follow the edges of shadows.
                 pixels[*pixel as usize] += if *blocked { Rgb::ZERO } else { *brought };
+            }
+
+            // Something transparent may be all that is in the way of those that are blocked.
+            if !bounds.is_empty() {
+                suspects.find(bounds, aim, origins, blocked, level);
+                for (ray, origin) in suspects.passing() {
+                    // It counts again, surface by surface.
+                    counts.shadow -= 1;
+                    let (pixel, brought) = shadows.light[ray];
+                    coloured.push(aim.ray_from(origin), number, pixel, brought);
+                }
             }
             shadows.origins.drain(..count);
             shadows.light.drain(..count);
         }
 
         // Only many rays at a time keep enough of them in flight.
-        let fewest = if fewest > 1 { WAVE } else { 1 };
         while coloured.len() >= fewest {
             coloured.advance(frame, pixels, counts);
         }
+    }
+}
+
+/// Blocked rays to a light, of which some may meet something transparent.
+#[derive(Default)]
+struct Suspects {
+    /// Which rays are blocked, and where they start.
+    rays: Vec<usize>,
+    origins: Vec<Vec3>,
+    /// Not zero where something transparent may be in the way.
+    answers: Vec<u32>,
+}
+
+impl Suspects {
+    /// Finds out which of the blocked rays may meet something in the boxes.
+    fn find(
+        &mut self,
+        bounds: &[Aabb],
+        aim: Aim,
+        origins: &[Vec3],
+        blocked: &[bool],
+        level: SimdLevel,
+    ) {
+        let Self { rays, origins: starts, answers } = self;
+        rays.clear();
+        rays.extend(
+            blocked.iter().enumerate().filter(|(_, blocked)| **blocked).map(|(ray, _)| ray),
+        );
+        starts.clear();
+        starts.extend(rays.iter().map(|&ray| origins[ray]));
+        answers.clear();
+        answers.resize(rays.len(), 0);
+        level.run(LightMayPass { bounds, aim, origins: starts, answers });
+    }
+
+    /// Those that may, and where they start.
+    fn passing(&self) -> impl Iterator<Item = (usize, Vec3)> + '_ {
+        let all = self.rays.iter().zip(&self.origins).zip(&self.answers);
+        all.filter(|(_, answer)| **answer != 0).map(|((ray, origin), _)| (*ray, *origin))
     }
 }
 
