@@ -243,18 +243,18 @@ impl Floor {
     fn color_lanes(self, points: &Lanes) -> Lanes {
         let mut joints = [0; LANES];
         let [mut bases, mut veins, mut stones] = [[[0.0; LANES]; 3]; 3];
-        for lane in 0..LANES {
+        for (lane, on_joint) in joints.iter_mut().enumerate() {
             let OnTile { base, vein, stone, joint } = self.at(get(points, lane));
             set(&mut bases, lane, base);
             set(&mut veins, lane, vein);
             set(&mut stones, lane, stone);
-            joints[lane] = u32::from(joint.is_some());
+            *on_joint = u32::from(joint.is_some());
         }
         let mut colors = marble_lanes(&bases, &veins, &stones);
         let between = 0.25 * (self.colors[0] + self.colors[1]);
-        for lane in 0..LANES {
+        for (lane, on_joint) in joints.iter().enumerate() {
             let color = get(&colors, lane);
-            set(&mut colors, lane, if joints[lane] != 0 { between } else { color });
+            set(&mut colors, lane, if *on_joint != 0 { between } else { color });
         }
         colors
     }
@@ -289,8 +289,8 @@ impl Wall {
         }
         let grain = fractal3_lanes(&places, GRAIN_OCTAVES, GRAIN_SEED);
         let mut colors = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            set(&mut colors, lane, self.grained(get(points, lane), grain[lane]));
+        for (lane, grain) in grain.iter().enumerate() {
+            set(&mut colors, lane, self.grained(get(points, lane), *grain));
         }
         colors
     }
