@@ -181,15 +181,13 @@ impl Surfaces {
                 Which::Sphere(_) => [u32::MAX; 3],
             };
             let positions = mesh.triangles.positions();
-            for corner in 0..3 {
-                let vertex = corners[corner] as usize;
-                let position = positions.get(vertex).copied().unwrap_or(Vec3::ZERO);
+            for (corner, &vertex) in corners.iter().enumerate() {
+                let position = positions.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
                 set(&mut self.corners[corner], count, position);
             }
             if !mesh.normals.is_empty() {
-                for corner in 0..3 {
-                    let vertex = corners[corner] as usize;
-                    let normal = mesh.normals.get(vertex).copied().unwrap_or(Vec3::ZERO);
+                for (corner, &vertex) in corners.iter().enumerate() {
+                    let normal = mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
                     set(&mut self.corner_normals[corner], count, normal);
                 }
             }
