@@ -1,13 +1,15 @@
-//! Large packets: up to 256 rays through one point, or in one direction, together through the wide tree.
+//! Large packets: up to 256 rays whose lines meet in one point, or that are parallel, together through the wide tree.
 //!
 //! Seen from their common point, rays are points of a plane, and everything about them is linear. Sixteen groups of sixteen rays go down the tree
 //! together; a child is entered by the groups whose pyramids meet its box. What is found of a triangle once serves all rays: Wald, Slusallek, Benthin and
 //! Wagner, "Interactive Rendering with Coherent Ray Tracing", CGF 2001; Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH
 //! 2005; Fuetterling, Lojewski, Pfreundt and Ebert, "Efficient Ray Tracing Kernels for Modern CPU Architectures", JCGT 2015.
 
+mod finish;
 mod frame;
 mod gather;
 mod groups;
+mod hits;
 mod image;
 mod kind;
 mod leaving;
@@ -21,18 +23,16 @@ mod waiting;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
-use super::sink::{Sink, SixteenHits};
+use super::sink::Sink;
 use super::source::{Common, Source};
 use super::step;
 use crate::geometry::LANES;
-use crate::simd::{Float, Simd, dispatch_on};
-use crate::traverse::nearest::hit as hit_one;
-use crate::{Geometry, Hit, HitColumns, PreparedRay};
+use crate::simd::{Float, Simd};
+use crate::{Geometry, HitColumns};
 use frame::Frame;
 use groups::Groups;
 use kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
-use leaving::{Leaving, Plane};
-use triangles::{GREATEST_VOLUME, TRIANGLES, Triangles};
+use triangles::{TRIANGLES, Triangles};
 use waiting::Waiting;
 
 /// How many rays a packet has at most.
@@ -100,20 +100,8 @@ const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 /// A group is given up when it was tested against more triangles than this: about as long does it take to trace its rays one by one.
 const MOST_WORK: f32 = 128.0;
 
-/// What an edge function's error hardly ever exceeds, as a share of what it may be.
-const LIKELY_ERROR: f32 = 1.0 / 16.0;
-
-/// From so many rays of a group on they are asked together whether they leave a triangle's plane.
-const SEVERAL: u32 = 4;
-
 /// Sixteen bits.
 const ALL: u32 = 0xffff;
-
-/// By how much of itself a depth, and its share of the start's, may be off but for the tolerance.
-const START_ERROR: f32 = 1.0 / (1 << 22) as f32;
-
-/// Hits nearer to a ray's start than this share of its distance from the common point are looked for from the start.
-const NEAR: f32 = 1.0 / 512.0;
 
 /// Stands for a primitive where none was hit.
 const NONE: u32 = HitColumns::NONE;
@@ -425,319 +413,4 @@ impl Packet {
         }
         self.groups.live &= !too_much;
     }
-
-    /// Tests a triangle against the rays of a group and takes what is certainly hit. Returns the rays for which that is not certain.
-    #[inline(always)]
-    fn test<S: Simd, K: Kind, const FAST: bool>(
-        &mut self,
-        simd: S,
-        triangles: &Triangles,
-        lane: usize,
-        group: usize,
-        primitive: f32,
-    ) -> (u32, u32) {
-        let x = simd.load16(&self.slopes[0][group]);
-        let y = simd.load16(&self.slopes[1][group]);
-        let edge_a = triangles.function(simd, 0, lane, x, y);
-        let edge_b = triangles.function(simd, 1, lane, x, y);
-        let edge_c = triangles.function(simd, 2, lane, x, y);
-        let depth = triangles.function(simd, 3, lane, x, y);
-        let least = edge_a.smaller(edge_b).smaller(edge_c);
-        if FAST {
-            return self.take_fast::<S, K>(
-                simd,
-                least,
-                depth,
-                [edge_b, edge_c],
-                (group, primitive),
-                (triangles.errors[lane], triangles.tolerances[lane]),
-            );
-        }
-        let (error, certainly) = (triangles.errors[lane], triangles.certain[lane]);
-        let nearest = simd.load16(&self.nearest[group]);
-        let tolerance = simd.splat16(triangles.tolerances[lane]);
-        let error_of_depth = if K::PARALLEL { tolerance } else { depth * tolerance };
-        let more = depth + error_of_depth;
-        if K::ANY {
-            let less = depth - error_of_depth;
-            let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
-            let certain = simd.splat16(certainly).less(least)
-                & nearest.less(less)
-                & more.less(simd.splat16(self.start));
-            let blocked = simd.splat16(f32::INFINITY);
-            let hit = possible & certain;
-            self.nearest[group] = nearest.replaced(hit, blocked).to_array();
-            return (hit, possible & !certain);
-        }
-        let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
-        let (late, certainly_late) =
-            self.behind_start::<S, K>(simd, depth, triangles.tolerances[lane], group);
-        let possible = possible & late;
-        let hit = possible & simd.splat16(certainly).less(least) & certainly_late;
-        let doubtful = possible & !hit;
-
-        self.take(simd, hit, depth, [edge_b, edge_c], group, primitive);
-        (hit, doubtful)
-    }
-
-    /// Takes what is hit as far as rounding allows to tell.
-    #[inline(always)]
-    fn take_fast<S: Simd, K: Kind>(
-        &mut self,
-        simd: S,
-        least: S::F16,
-        depth: S::F16,
-        weights: [S::F16; 2],
-        (group, primitive): (usize, f32),
-        (error, tolerance): (f32, f32),
-    ) -> (u32, u32) {
-        let nearest = simd.load16(&self.nearest[group]);
-        if K::ANY {
-            // Seen from the light triangles are small, and at silhouettes rounding tells by some millionths wrongly which rays are in shadow.
-            let likely = simd.splat16(error * LIKELY_ERROR);
-            let near_edge = simd.splat16(0.0) - likely;
-            let before = nearest.less(depth) & depth.less(simd.splat16(self.start));
-            let possible = near_edge.less_or_equal(least) & before;
-            let hit = likely.less(least) & before;
-            let blocked = simd.splat16(f32::INFINITY);
-            self.nearest[group] = nearest.replaced(hit, blocked).to_array();
-            return (hit, possible & !hit);
-        }
-        let possible = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
-        let (late, certainly_late) = self.behind_start::<S, K>(simd, depth, tolerance, group);
-        let hit = possible & certainly_late;
-        self.take(simd, hit, depth, weights, group, primitive);
-        (hit, possible & late & !hit)
-    }
-
-    /// Where one over a `depth` is that of a point behind the ray's start, as far as that can be told: perhaps, and certainly and so far behind that the distance from there is known well.
-    #[inline(always)]
-    fn behind_start<S: Simd, K: Kind>(
-        &self,
-        simd: S,
-        depth: S::F16,
-        tolerance: f32,
-        group: usize,
-    ) -> (u32, u32) {
-        if !K::LATE {
-            return (ALL, ALL);
-        }
-        // One at the start, and the less the farther away.
-        let share = depth * simd.load16(&self.starts[group]);
-        let error = tolerance + START_ERROR;
-        let perhaps = share.less_or_equal(simd.splat16(1.0 + error));
-        (perhaps, share.less_or_equal(simd.splat16(1.0 - error / TOLERANCE)))
-    }
-
-    /// Takes hits that are nearer than what the rays have.
-    #[inline(always)]
-    fn take<S: Simd>(
-        &mut self,
-        simd: S,
-        hit: u32,
-        depth: S::F16,
-        weights: [S::F16; 2],
-        group: usize,
-        primitive: f32,
-    ) {
-        let nearest = simd.load16(&self.nearest[group]);
-        // The largest of the old and what is larger where hit: written whole, so that it can be read again at once.
-        let nowhere = simd.splat16(f32::NEG_INFINITY);
-        self.nearest[group] = nowhere.replaced(hit, depth).larger(nearest).to_array();
-        let primitives = simd.load16(&self.primitives[group]);
-        self.primitives[group] = primitives.replaced(hit, simd.splat16(primitive)).to_array();
-        let [for_b, for_c] = weights;
-        let weights = simd.load16(&self.weights[0][group]);
-        self.weights[0][group] = weights.replaced(hit, for_b).to_array();
-        let weights = simd.load16(&self.weights[1][group]);
-        self.weights[1][group] = weights.replaced(hit, for_c).to_array();
-    }
-
-    /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
-    #[cold]
-    #[inline(never)]
-    fn settle<G: Geometry, R: Source, K: Kind>(
-        &mut self,
-        piece: &Piece<'_, G, R>,
-        leaf: Reference,
-        lane: usize,
-        group: usize,
-        doubtful: u32,
-    ) {
-        let block = piece.tree.block(leaf);
-        let is_triangle =
-            !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
-        let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
-        let mut doubtful = doubtful;
-        let plane = match plane {
-            Some(plane) if doubtful.count_ones() >= SEVERAL => {
-                let (packet, rays) = (&*self, &piece.rays);
-                let leaving = Leaving { packet, rays, group, some: doubtful, plane };
-                doubtful &= !dispatch_on(piece.tree.level, leaving);
-                None
-            }
-            few => few,
-        };
-        for place in (0..GROUP).filter(|place| doubtful >> place & 1 == 1) {
-            if self.nearest[group][place] == f32::INFINITY {
-                continue;
-            }
-            let number = usize::from(self.numbers[group][place]);
-            let ray = piece.rays.ray(number);
-            if plane.as_ref().is_some_and(|plane| plane.is_left_by(&ray)) {
-                continue;
-            }
-            let Some(ray) = PreparedRay::new(&ray) else {
-                continue;
-            };
-            let hit = match is_triangle {
-                true => block.intersect_one(&ray, lane),
-                false => hit_one(piece.geometry, &ray, block.primitives[lane]),
-            };
-            let Some(hit) = hit else { continue };
-            let nearest = &mut self.nearest[group][place];
-            if K::ANY {
-                *nearest = f32::INFINITY;
-                continue;
-            }
-            let (scale, start) = (self.scales[group][place], self.starts[group][place]);
-            let (depth, near) = match K::LATE {
-                true => (1.0 / (start + hit.t.abs() / scale), hit.t.abs() < start * scale * NEAR),
-                false => (scale / hit.t.abs(), false),
-            };
-            if depth > GREATEST_VOLUME || near {
-                // At the origin itself: nothing is nearer, and one over the depth cannot tell how near it is.
-                self.alone[group] |= 1 << place;
-                *nearest = f32::INFINITY;
-            } else if depth > *nearest {
-                *nearest = depth;
-                self.primitives[group][place] = f32::from_bits(block.primitives[lane]);
-                self.weights[0][group][place] = hit.u * depth;
-                self.weights[1][group][place] = hit.v * depth;
-            }
-        }
-    }
-
-    /// Writes what was found.
-    #[inline(always)]
-    fn finish<S: Simd, R: Source, H: Sink, K: Kind>(
-        &self,
-        simd: S,
-        rays: &R,
-        hits: &mut H,
-        rest: &mut Vec<usize>,
-        first: usize,
-    ) {
-        let (zero, one) = (simd.splat16(0.0), simd.splat16(1.0));
-        for group in 0..rays.len().div_ceil(GROUP) {
-            let members = self.members[group];
-            if members == 0 {
-                continue;
-            }
-            let nearest = simd.load16(&self.nearest[group]);
-            let depth = one / nearest;
-            let from_start = match K::LATE {
-                true => depth - simd.load16(&self.starts[group]),
-                false => depth,
-            };
-            let found = SixteenHits {
-                t: from_start * simd.load16(&self.scales[group]),
-                u: depth * simd.load16(&self.weights[0][group]),
-                v: depth * simd.load16(&self.weights[1][group]),
-                primitives: self.primitives[group],
-                hit: zero.less(nearest),
-            };
-            let is_sorted = self.sorted >> group & 1 == 1;
-            if is_sorted || self.is_bounded || self.is_later && members != ALL {
-                let numbers = [found.t.to_array(), found.u.to_array(), found.v.to_array()];
-                self.finish_apart(rays, group, numbers, hits, (rest, first));
-            } else {
-                hits.set_sixteen(simd, group * GROUP, found);
-            }
-            if self.alone[group] != 0 {
-                let alone = (0..GROUP).filter(|lane| self.alone[group] >> lane & 1 == 1);
-                rest.extend(alone.map(|lane| first + usize::from(self.numbers[group][lane])));
-            }
-        }
-    }
-
-    /// Writes what the rays of a group found one by one: in their own order, and not what lies so near to a ray's end that only the exact test can tell.
-    #[inline(never)]
-    fn finish_apart<R: Source, H: Sink>(
-        &self,
-        rays: &R,
-        group: usize,
-        [t, u, v]: [[f32; GROUP]; 3],
-        hits: &mut H,
-        (rest, first): (&mut Vec<usize>, usize),
-    ) {
-        for lane in 0..GROUP {
-            let number = usize::from(self.numbers[group][lane]);
-            if self.members[group] >> lane & 1 == 0 {
-                continue;
-            }
-            let primitive = self.primitives[group][lane].to_bits();
-            let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
-            let hit = (primitive != NONE).then_some(hit);
-            hits.set(number, hit);
-            if self.is_bounded && hit.is_some_and(|hit| hit.t > rays.ray(number).t_max * NEARLY) {
-                rest.push(first + number);
-            }
-        }
-    }
-
-    /// Writes which rays are blocked.
-    #[inline(always)]
-    fn finish_any<S: Simd>(
-        &self,
-        simd: S,
-        occluded: &mut [bool],
-        rest: &mut Vec<usize>,
-        first: usize,
-    ) {
-        let blocked = simd.splat16(f32::INFINITY);
-        for group in 0..occluded.len().div_ceil(GROUP) {
-            let found = blocked.less_or_equal(simd.load16(&self.nearest[group]));
-            let members = self.members[group];
-            if members == 0 {
-                continue;
-            }
-            let found = found & members;
-            let is_apart = self.sorted >> group & 1 == 1 || self.is_later && members != ALL;
-            let answers = occluded[group * GROUP..].first_chunk_mut::<GROUP>();
-            if let (false, Some(answers)) = (is_apart, answers) {
-                *answers = truths(found);
-            } else {
-                for (lane, number) in self.numbers[group].iter().enumerate() {
-                    if members >> lane & 1 == 1 {
-                        occluded[usize::from(*number)] = found >> lane & 1 == 1;
-                    }
-                }
-            }
-            let alone = self.alone[group] & !found;
-            if alone != 0 {
-                let alone = (0..GROUP).filter(|lane| alone >> lane & 1 == 1);
-                rest.extend(alone.map(|lane| first + usize::from(self.numbers[group][lane])));
-            }
-        }
-    }
 }
-
-/// Each of sixteen bits as a truth value.
-#[inline(always)]
-fn truths(bits: u32) -> [bool; GROUP] {
-    let mut truths = [false; GROUP];
-    for (half, truths) in truths.chunks_exact_mut(8).enumerate() {
-        // The bits eight times, a byte each; of each byte the bit of its number; and that moved to the lowest place.
-        let copies = u64::from(bits >> (8 * half) & 0xff) * 0x0101_0101_0101_0101;
-        let single = copies & 0x8040_2010_0804_0201;
-        let lowest = (single + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101;
-        for (truth, byte) in truths.iter_mut().zip(lowest.to_le_bytes()) {
-            *truth = byte != 0;
-        }
-    }
-    truths
-}
-
-/// From this share of a ray's length on a hit may lie beyond its end.
-const NEARLY: f32 = 1.0 - 1.0 / 512.0;
