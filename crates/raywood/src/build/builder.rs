@@ -8,6 +8,7 @@ use super::midpoint::Midpoint;
 use super::reinsertion;
 use super::sah_binned::BinnedSah;
 use super::sah_sweep::SweepSah;
+use super::spatial;
 use crate::{BuildError, BuildOptions, Bvh2, Geometry};
 
 /// How a binary tree is built: the same kind of tree, of different quality.
@@ -52,5 +53,17 @@ impl Bvh2 {
             Builder::Hlbvh => hlbvh::build(geometry, options)?,
         };
         Ok(reinsertion::optimize(tree, options))
+    }
+
+    /// As [`build_by`](Self::build_by) with the builder from which the wide tree is made and, if the options ask for it, with triangles cut: some primitives may
+    /// then lie in several leaves, whose boxes are around parts of them.
+    pub(crate) fn build_for_wide<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+    ) -> Result<Self, BuildError> {
+        if options.wide_builder == Builder::SahBinned && options.clamped().spatial_splits > 0.0 {
+            return Ok(reinsertion::optimize(spatial::build(geometry, options)?, options));
+        }
+        Self::build_by(options.wide_builder, geometry, options)
     }
 }

@@ -59,7 +59,7 @@ impl Around {
         self.centers.grow(&other.centers);
     }
 
-    fn of(primitives: &[Primitive]) -> Self {
+    pub(super) fn of(primitives: &[Primitive]) -> Self {
         parallel::fold(primitives, Self::NOTHING, Self::include, Self::grow)
     }
 }

@@ -17,9 +17,11 @@ mod reinsertion;
 mod sah_binned;
 mod sah_small;
 mod sah_sweep;
+mod spatial;
 
 pub use builder::Builder;
 pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;
 pub use preset::BuildPreset;
 pub(crate) use primitive::Primitive;
+pub(crate) use spatial::margin as part_margin;

@@ -57,6 +57,12 @@ impl PackedAabb {
         self.union(Self { min, max })
     }
 
+    /// Whether it holds no point: as [`Aabb::is_empty`].
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        Aabb::from(*self).is_empty()
+    }
+
     /// The centre. Does not overflow.
     #[inline(always)]
     pub(crate) fn center(&self) -> [f32; 4] {

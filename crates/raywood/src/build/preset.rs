@@ -16,7 +16,7 @@ pub enum BuildPreset {
     Balanced,
     /// More bins, more nodes improved in more passes.
     High,
-    /// Every node improved as long as it pays: for scenes that are traced for long.
+    /// Every node improved as long as it pays, and large triangles cut: for scenes that are traced for long.
     Best,
 }
 
@@ -42,13 +42,13 @@ impl BuildPreset {
 
     /// What it chooses. `balanced` is [`BuildOptions::default`]; each of the others differs from it as told here, and all else may be changed:
     ///
-    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` |
-    /// | --- | --- | ---: | ---: | --- | ---: |
-    /// | `fastest` | `Lbvh` | 8 | | none | |
-    /// | `fast` | `Hlbvh` | 4 | 16 | none | |
-    /// | `balanced` | `SahBinned` | 4 | 16 | four for the wide tree, none for binary trees | 0.05 |
-    /// | `high` | `SahBinned` | 4 | 32 | up to 10 | 0.2 |
-    /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 |
+    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` | `spatial_splits` |
+    /// | --- | --- | ---: | ---: | --- | ---: | ---: |
+    /// | `fastest` | `Lbvh` | 8 | | none | | |
+    /// | `fast` | `Hlbvh` | 4 | 16 | none | | |
+    /// | `balanced` | `SahBinned` | 4 | 16 | four for the wide tree, none for binary trees | 0.05 | 0 |
+    /// | `high` | `SahBinned` | 4 | 32 | up to 10 | 0.2 | 0 |
+    /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 | 0.3 |
     pub fn options(self) -> BuildOptions {
         let balanced = BuildOptions::default();
         match self {
@@ -75,6 +75,7 @@ impl BuildPreset {
                 wide_leaf_size: 1,
                 reinsertion_passes: Some(20),
                 reinsertion_share: 1.0,
+                spatial_splits: 0.3,
                 ..balanced
             },
         }

@@ -50,6 +50,11 @@ impl Node {
         Self::leaf(bounds, left, 0)
     }
 
+    /// The same node with another box.
+    pub(crate) fn with_bounds(self, bounds: Aabb) -> Self {
+        Self::leaf(bounds, self.left_first(), self.count())
+    }
+
     /// The same interior node with its children elsewhere.
     pub(crate) fn with_children_at(self, left: u32) -> Self {
         Self::interior(self.bounds(), left)

@@ -17,6 +17,7 @@ pub use frustum::Frustum;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Kernel, Simd, dispatch_on};
 use crate::structures::WideNode;
+use crate::structures::wide::parts::Told;
 use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes, planes};
 use crate::{Bvh, Geometry, WideBvh, parallel};
 
@@ -117,7 +118,7 @@ where
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
         let Self { tree, geometry, touch, visit } = self;
-        let mut touching = Touching { geometry, touch, visit };
+        let mut touching = Touching { geometry, touch, told: tree.told(), visit };
         tree.search(simd, geometry, &mut SearchStack::new(tree), &mut touching)
     }
 }
@@ -126,6 +127,7 @@ where
 struct Touching<'a, G, T, F> {
     geometry: &'a G,
     touch: T,
+    told: Told<'a>,
     visit: F,
 }
 
@@ -148,7 +150,10 @@ where
     fn leaf<S: Simd>(&mut self, simd: S, leaf: Leaf<'t>) -> ControlFlow<()> {
         if leaf.triangles != 0 {
             for lane in lanes(self.touch.triangles(simd, leaf.block, leaf.triangles)) {
-                (self.visit)(leaf.block.primitives[lane])?;
+                let primitive = leaf.block.primitives[lane];
+                if self.told.is_new(primitive) {
+                    (self.visit)(primitive)?;
+                }
             }
         }
         for primitive in leaf.others() {

@@ -123,7 +123,7 @@ impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FA
         let mut currents = [IDLE; RAYS];
         for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
             *current = tree.root.0;
-            flights.push(Flight::new(&ray, number, tree.reach));
+            flights.push(Flight::new(&ray, number, tree));
         }
         let flights = &mut flights[..];
         let mut spilled = Vec::new();
@@ -147,7 +147,7 @@ impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FA
                 finish(flight.number, ended);
                 currents[place] = IDLE;
                 if let Some((number, ray)) = waiting.next() {
-                    flight.begin(&ray, number, tree.reach);
+                    flight.begin(&ray, number, tree);
                     currents[place] = tree.root.0;
                 }
             }

@@ -3,6 +3,7 @@
 use super::WideBvh;
 use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
 use super::node::{Reference, WIDTH, WideNode};
+use super::parts::Parts;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, Part};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
@@ -23,7 +24,7 @@ pub(super) fn build<G: Geometry>(
         reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
         ..options.clone()
     };
-    let tree = Bvh2::build_by(options.wide_builder, geometry, &options)?;
+    let tree = Bvh2::build_for_wide(geometry, &options)?;
     let plan = Plan::new(&tree);
     let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
     let lines = match tree.nodes() {
@@ -52,6 +53,7 @@ pub(super) fn build<G: Geometry>(
         primitives,
         triangle_test,
         reach,
+        parts: Parts::of(&tree, geometry.len()),
         depth,
         root,
         arena,
@@ -157,11 +159,16 @@ impl<G: Geometry> Wide<'_, G> {
 fn leaf(primitives: &[u32], corners: &[Option<[Vec3; 3]>], mut place: Part<'_>) -> Reference {
     let mut block = TriangleBlock::default();
     let mut mixed = false;
-    for (lane, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
+    let mut lane = 0;
+    for (place, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
+        if primitives[..place].contains(&primitive) {
+            continue;
+        }
         mixed |= triangle.is_none();
         block.set(lane, primitive, triangle.unwrap_or_default());
+        lane += 1;
     }
-    let leaf = Reference::leaf(place.first(), primitives.len(), mixed);
+    let leaf = Reference::leaf(place.first(), lane, mixed);
     place.put(block);
     leaf
 }

@@ -1,11 +1,13 @@
 //! The invariants of the wide tree, checked.
 
+use std::collections::HashMap;
+
 use super::WideBvh;
 use super::node::{Reference, WideNode};
 use crate::geometry::{LANES, TriangleBlock};
-use crate::{Geometry, ValidationError};
+use crate::{Aabb, Geometry, ValidationError, Vec3};
 
-/// Checks that every cache line of nodes and leaves is reached once, every primitive lies in exactly one leaf, boxes hold what is below them, blocks hold the corners of
+/// Checks that every cache line of nodes and leaves is reached once, every primitive lies in exactly one leaf or its parts in several, boxes hold what is below them, blocks hold the corners of
 /// their triangles, and the depth is what stacks are made for.
 pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), ValidationError> {
     let (primitives, lines) = (geometry.len(), tree.arena.len());
@@ -16,6 +18,7 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
     }
     let mut reached = vec![0usize; lines];
     let mut times = vec![0usize; primitives];
+    let mut parts = HashMap::<u32, Vec<Aabb>>::new();
     let mut pending = vec![(tree.root, tree.bounds, 1)];
     while let Some((reference, bounds, depth)) = pending.pop() {
         if reference == Reference::NOTHING {
@@ -51,10 +54,13 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
             let Some(times) = times.get_mut(primitive as usize) else { return Err(bad) };
             *times += 1;
             let content = geometry.bounds(primitive);
-            if !bounds.contains(&content) {
+            let triangle = geometry.triangle(primitive);
+            if tree.parts.contain(primitive) && triangle.is_some() {
+                parts.entry(primitive).or_default().push(bounds);
+            } else if !bounds.contains(&content) {
                 return Err(ValidationError::NotEnclosed { node, bounds, content });
             }
-            match geometry.triangle(primitive) {
+            match triangle {
                 Some(corners) if corners == block.corners(lane) => {}
                 None if reference.is_mixed() => {}
                 _ => return Err(ValidationError::WrongContent { node }),
@@ -64,10 +70,30 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
     if let Some(node) = reached.iter().position(|&times| times != 1) {
         return Err(ValidationError::NodeReached { node, times: reached[node] });
     }
-    match times.iter().position(|&times| times != 1) {
-        Some(primitive) => {
-            Err(ValidationError::PrimitiveReached { primitive, times: times[primitive] })
-        }
+    let is_wrong = |(primitive, &times): (usize, &usize)| {
+        times == 0 || times > 1 && !tree.parts.contain(primitive as u32)
+    };
+    if let Some(primitive) = times.iter().enumerate().position(is_wrong) {
+        return Err(ValidationError::PrimitiveReached { primitive, times: times[primitive] });
+    }
+    let uncovered = |(primitive, boxes): (&u32, &Vec<Aabb>)| {
+        let corners = geometry.triangle(*primitive)?;
+        (!cover(boxes, corners)).then_some(*primitive)
+    };
+    match parts.iter().filter_map(uncovered).min() {
+        Some(primitive) => Err(ValidationError::NotReferenced { node: 0, primitive }),
         None => Ok(()),
     }
+}
+
+/// Whether each of some points of a triangle lies in one of the boxes, a grid with its corners and the middles of its edges.
+fn cover(boxes: &[Aabb], [a, b, c]: [Vec3; 3]) -> bool {
+    const STEPS: i32 = 8;
+    let own = Aabb::of_points([a, b, c]);
+    (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| (i, j))).all(|(i, j)| {
+        let (u, v) = (i as f32 / STEPS as f32, j as f32 / STEPS as f32);
+        // Rounding does not take it out of the triangle's own box.
+        let point = (a + u * (b - a) + v * (c - a)).max(own.min).min(own.max);
+        boxes.iter().any(|bounds| bounds.contains(&Aabb { min: point, max: point }))
+    })
 }

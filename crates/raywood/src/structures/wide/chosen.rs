@@ -4,7 +4,6 @@ use super::WideBvh;
 use super::crossings::as_hit;
 use super::node::Reference;
 use super::single::SmallStack;
-use super::slabs::{Slabs, end_of_keys};
 use super::step::{lanes, leaf_hits};
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Kernel, Simd};
@@ -35,7 +34,7 @@ impl<G: Geometry, C: Chooser, const ANY: bool, const FAST: bool> Kernel
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, chooser } = self;
         let mut nearest = Nearest::new(ray);
-        let slabs = Slabs::new(ray, tree.reach);
+        let slabs = tree.slabs(ray);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();
         let (mut top, mut current) = (1, tree.root);
@@ -67,7 +66,7 @@ impl<G: Geometry, C: Chooser, const ANY: bool, const FAST: bool> Kernel
             }
 
             // On to the next that begins before the closest hit.
-            let end = end_of_keys(nearest.t_max());
+            let end = slabs.end_of_keys(nearest.t_max());
             current = loop {
                 top -= 1;
                 if keys[top] <= end {

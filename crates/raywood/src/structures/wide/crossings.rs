@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use super::WideBvh;
 use super::node::Reference;
+use super::parts::Told;
 use super::single::SmallStack;
-use super::slabs::{Slabs, end_of_keys};
 use super::step::{lanes, others};
 use crate::geometry::{BlockHits, TriangleBlock, cross_triangle};
 use crate::simd::{Float, Kernel, Simd};
@@ -38,9 +38,10 @@ impl<G: Geometry, V: HitVisitor> Kernel for Crossings<'_, G, V> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
         let Self { tree, geometry, ray, visitor } = self;
-        let visitor = &mut WithinInterval { t_min: ray.t_min, t_max: ray.t_max, visitor };
+        let told = tree.told();
+        let visitor = &mut WithinInterval { t_min: ray.t_min, t_max: ray.t_max, told, visitor };
         let ray = &with_longer_interval(ray);
-        let slabs = Slabs::new(ray, tree.reach);
+        let slabs = tree.slabs(ray);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();
         let (mut top, mut current) = (1, tree.root);
@@ -83,7 +84,7 @@ impl<G: Geometry, V: HitVisitor> Kernel for Crossings<'_, G, V> {
             // On to the next; where the limit shrinks, to the next that begins before it.
             top -= 1;
             if V::LIMIT_SHRINKS {
-                let end = end_of_keys(visitor.limit());
+                let end = slabs.end_of_keys(visitor.limit());
                 while keys[top] > end {
                     top -= 1;
                 }
@@ -104,10 +105,11 @@ fn with_longer_interval(ray: &PreparedRay) -> PreparedRay {
     longer
 }
 
-/// Hands on hits within an interval.
+/// Hands on hits within an interval, each once.
 struct WithinInterval<'a, V> {
     t_min: f32,
     t_max: f32,
+    told: Told<'a>,
     visitor: &'a mut V,
 }
 
@@ -121,7 +123,7 @@ impl<V: HitVisitor> HitVisitor for WithinInterval<'_, V> {
 
     #[inline(always)]
     fn visit(&mut self, hit: Hit) -> ControlFlow<()> {
-        if self.t_min <= hit.t && hit.t < self.t_max {
+        if self.t_min <= hit.t && hit.t < self.t_max && self.told.is_new(hit.primitive) {
             self.visitor.visit(hit)
         } else {
             ControlFlow::Continue(())

@@ -1,7 +1,8 @@
 //! The state of a ray in flight: all in one place, of fixed size, so that finding it takes one multiplication.
 
+use super::WideBvh;
 use super::node::{Reference, WIDTH, WideNode};
-use super::slabs::{Slabs, end_of_keys};
+use super::slabs::Slabs;
 use crate::simd::Simd;
 use crate::traverse::nearest::Nearest;
 use crate::{PreparedRay, Ray};
@@ -28,10 +29,10 @@ pub(super) struct Flight {
 
 impl Flight {
     /// A ray at its beginning, which must be valid.
-    pub(super) fn new(ray: &Ray, number: usize, reach: f32) -> Self {
+    pub(super) fn new(ray: &Ray, number: usize, tree: &WideBvh) -> Self {
         let ray = PreparedRay::of_valid(ray);
         let mut flight = Self {
-            slabs: Slabs::new(&ray, reach),
+            slabs: tree.slabs(&ray),
             nearest: Nearest::new(&ray),
             top: 1,
             number,
@@ -45,9 +46,12 @@ impl Flight {
 
     /// Another ray in the place of one that has ended.
     #[inline(always)]
-    pub(super) fn begin(&mut self, ray: &Ray, number: usize, reach: f32) {
+    pub(super) fn begin(&mut self, ray: &Ray, number: usize, tree: &WideBvh) {
         let ray = PreparedRay::of_valid(ray);
-        self.slabs.replace(&ray, reach);
+        self.slabs.replace(&ray, tree.reach);
+        if tree.parts.exist() {
+            self.slabs = self.slabs.among_parts(tree.parts.margin(ray.origin));
+        }
         self.nearest = Nearest::new(&ray);
         self.ray = ray;
         self.number = number;
@@ -95,7 +99,7 @@ impl Flight {
     /// Takes from the stack what begins beyond the closest hit.
     #[inline(always)]
     pub(super) fn cull<S: Simd>(&mut self, simd: S) {
-        let end = end_of_keys(self.nearest.t_max());
+        let end = self.slabs.end_of_keys(self.nearest.t_max());
         self.top = simd.retain(&mut self.keys, &mut self.items, self.top, end);
     }
 }

@@ -10,6 +10,7 @@ mod flight;
 mod node;
 mod packet;
 pub(crate) mod pairs;
+pub(crate) mod parts;
 pub(crate) mod search;
 mod single;
 mod sink;
@@ -36,7 +37,9 @@ pub(crate) use chosen::Chooser;
 pub(crate) use crossings::HitVisitor;
 use node::Reference;
 pub(crate) use node::WideNode;
+use parts::{Parts, Told};
 use sink::Sink;
+use slabs::Slabs;
 use source::Source;
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
@@ -52,6 +55,8 @@ pub struct WideBvh {
     triangle_test: TriangleTest,
     /// How far the boxes reach from zero along any axis.
     reach: f32,
+    /// The primitives that lie in several leaves.
+    parts: Parts,
     /// How many nodes lie on the longest way from the root to a leaf.
     depth: usize,
     /// The node or leaf that holds everything; [`Reference::NOTHING`] if there is nothing.
@@ -75,6 +80,21 @@ impl WideBvh {
     /// The box around everything; empty if there is nothing.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// Remembers which primitives have been told of, for those who tell of each.
+    pub(crate) fn told(&self) -> Told<'_> {
+        Told::nothing(&self.parts)
+    }
+
+    /// A ray as the boxes of this tree are tested against it.
+    #[inline(always)]
+    fn slabs(&self, ray: &PreparedRay) -> Slabs {
+        let slabs = Slabs::new(ray, self.reach);
+        match self.parts.exist() {
+            true => slabs.among_parts(self.parts.margin(ray.origin)),
+            false => slabs,
+        }
     }
 
     /// The vector instructions that trace it.
@@ -267,7 +287,7 @@ impl AccelerationStructure for WideBvh {
     }
 
     fn bytes(&self) -> usize {
-        64 * self.arena.len()
+        64 * self.arena.len() + self.parts.bytes()
     }
 
     fn primitives(&self) -> usize {

@@ -1,5 +1,6 @@
 //! Two wide trees against each other.
 
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use super::WideBvh;
@@ -21,6 +22,7 @@ impl<F: FnMut(u32, u32) -> ControlFlow<()>> Kernel for Pairs<'_, F> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
         let Self { first, second, mut visit } = self;
+        let mut told = HashSet::new();
         let mut waiting = Vec::new();
         if first.root != Reference::NOTHING
             && second.root != Reference::NOTHING
@@ -32,7 +34,10 @@ impl<F: FnMut(u32, u32) -> ControlFlow<()>> Kernel for Pairs<'_, F> {
             if a.is_leaf() && b.is_leaf() {
                 for &primitive in &first.block(a).primitives[..a.count()] {
                     for &other in &second.block(b).primitives[..b.count()] {
-                        visit(primitive, other)?;
+                        let several = first.parts.contain(primitive) || second.parts.contain(other);
+                        if !several || told.insert((primitive, other)) {
+                            visit(primitive, other)?;
+                        }
                     }
                 }
                 continue;

@@ -174,6 +174,7 @@ impl WideBvh {
         mut visit: impl FnMut(u32) -> ControlFlow<(), f32>,
     ) -> ControlFlow<()> {
         let mut limit = f32::INFINITY;
+        let mut told = self.told();
         let mut waiting: Vec<(f32, Reference)> = Vec::new();
         if self.root != Reference::NOTHING
             && let Some(bound) = bound(&self.bounds)
@@ -186,7 +187,9 @@ impl WideBvh {
             }
             if reference.is_leaf() {
                 for &primitive in &self.block(reference).primitives[..reference.count()] {
-                    limit = visit(primitive)?;
+                    if told.is_new(primitive) {
+                        limit = visit(primitive)?;
+                    }
                 }
                 continue;
             }

@@ -2,7 +2,6 @@
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
-use super::slabs::{Slabs, end_of_keys};
 use super::step::{any_blocks, leaf_hits, take_closest};
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
@@ -57,7 +56,7 @@ fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
     mut nearest: Nearest,
     probe: &mut P,
 ) -> Option<Hit> {
-    let slabs = Slabs::new(ray, tree.reach);
+    let slabs = tree.slabs(ray);
     let mut stack = SmallStack::new(tree);
     let (keys, items) = stack.parts();
     let (mut top, mut current) = (1, tree.root);
@@ -78,7 +77,7 @@ fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
         }
 
         // On to the next that begins before the closest hit.
-        let end = end_of_keys(nearest.t_max());
+        let end = slabs.end_of_keys(nearest.t_max());
         current = loop {
             top -= 1;
             if keys[top] <= end {
@@ -103,7 +102,7 @@ impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { tree, geometry, ray, probe } = self;
         let Some(ray) = PreparedRay::new(ray) else { return false };
-        let slabs = Slabs::new(&ray, tree.reach);
+        let slabs = tree.slabs(&ray);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();
         let (mut top, mut current) = (1, tree.root);

@@ -6,6 +6,7 @@
 //! skipped. Which hit wins is decided by the canonical test of the primitive's own box alone.
 
 use super::node::WideNode;
+use crate::build::part_margin::DISTANCE_ERROR;
 use crate::geometry::TriangleBlock;
 use crate::minmax::larger;
 use crate::simd::{Float, Simd};
@@ -37,6 +38,8 @@ pub(super) struct Slabs {
     /// What is added to the product of a plane of exit.
     exit: [f32; 3],
     t_min: f32,
+    /// By how much of itself the far distance is lengthened.
+    slack: f32,
     /// On which side the ray enters boxes.
     sides: [Side; 3],
 }
@@ -77,6 +80,7 @@ impl Slabs {
             entry: [0, 1, 2].map(|axis| products[axis] - error(axis)),
             exit: [0, 1, 2].map(|axis| products[axis] + error(axis)),
             t_min,
+            slack: SLACK,
             sides: [side(reciprocal.x), side(reciprocal.y), side(reciprocal.z)],
         }
     }
@@ -103,6 +107,14 @@ impl Slabs {
                 (self.entry[axis], self.exit[axis]) = (f32::MIN, f32::MAX);
             }
         }
+    }
+
+    /// Those of the same ray among boxes of [parts](super::parts), which count as larger by `margin` besides.
+    #[inline(always)]
+    pub(super) fn among_parts(self, margin: f32) -> Self {
+        let mut slabs = if margin > 0.0 { self.around(margin) } else { self };
+        slabs.slack = DISTANCE_ERROR;
+        slabs
     }
 
     /// Those of the same ray among boxes that are larger by `margin` on all sides.
@@ -133,7 +145,14 @@ impl Slabs {
             near = entry.mul_add(reciprocal, simd.splat8(self.entry[axis])).larger(near);
             far = exit.mul_add(reciprocal, simd.splat8(self.exit[axis])).smaller(far);
         }
-        near.less_or_equal(far.abs().mul_add(simd.splat8(SLACK), far))
+        near.less_or_equal(far.abs().mul_add(simd.splat8(self.slack), far))
+    }
+
+    /// The key up to which items of a stack must be looked into when hits count up to `far`: the keys of boxes that may hold them are at most so large. Half
+    /// of the allowance is for what the keys lost on the stack.
+    #[inline(always)]
+    pub(super) fn end_of_keys(&self, far: f32) -> f32 {
+        end_with_slack(far, self.slack)
     }
 
     /// The children that the ray may meet up to `limit`, as a set of lanes, and where it enters the box of each, at the earliest.
@@ -155,7 +174,7 @@ impl Slabs {
             near = entry.mul_add(reciprocal, simd.splat16(self.entry[axis])).larger(near);
             far = exit.mul_add(reciprocal, simd.splat16(self.exit[axis])).smaller(far);
         }
-        let end = far.abs().mul_add(simd.splat16(SLACK), far);
+        let end = far.abs().mul_add(simd.splat16(self.slack), far);
         (near.less_or_equal(end), near)
     }
 }
@@ -166,10 +185,14 @@ fn largest(v: Vec3) -> f32 {
     larger(v.x, larger(v.y, v.z))
 }
 
-/// The key up to which items of a stack must be looked into when hits count up to `far`: the keys of boxes that may hold them are at most so large. Half
-/// of the allowance is for what the keys lost on the stack.
+/// [`Slabs::end_of_keys`] where there are no parts.
 #[inline(always)]
 pub(super) fn end_of_keys(far: f32) -> f32 {
+    end_with_slack(far, SLACK)
+}
+
+#[inline(always)]
+fn end_with_slack(far: f32, slack: f32) -> f32 {
     // The lane in the last digits of a key makes zero a little more than zero.
-    far + (far.abs() * (2.0 * SLACK) + f32::MIN_POSITIVE)
+    far + (far.abs() * (2.0 * slack) + f32::MIN_POSITIVE)
 }

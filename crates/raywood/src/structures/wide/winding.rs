@@ -3,10 +3,12 @@
 //!
 //! What is far away, beside its size, is seen as one small piece of surface; what is near is taken triangle by triangle, in double precision.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
+use super::parts::Told;
 use crate::double::{Double3, add, cross, dot, double, scale, sub};
 use crate::geometry::{LANES, TriangleBlock};
 use crate::{Aabb, Geometry, Vec3};
@@ -65,6 +67,9 @@ impl Sums {
 
     /// Where the surface is, and how far it reaches from there at most.
     fn center_and_radius(&self) -> (Double3, f64) {
+        if self.bounds.is_empty() {
+            return ([0.0; 3], 0.0);
+        }
         let (min, max) = (double(self.bounds.min), double(self.bounds.max));
         let center = match self.area > 0.0 {
             true => scale(1.0 / self.area, self.centers),
@@ -84,6 +89,8 @@ pub(crate) struct Winding {
     center: Double3,
     /// One over the tree's size.
     scale: f64,
+    /// The lanes of leaves whose primitives belong to leaves before them.
+    repeated: HashMap<u32, u32>,
 }
 
 impl Winding {
@@ -99,9 +106,10 @@ impl Winding {
             true => [0.0; 3],
             false => double(bounds.center()),
         };
-        let mut winding = Self { nodes: Vec::new(), root: tree.root.0, center, scale };
+        let repeated = HashMap::new();
+        let mut winding = Self { nodes: Vec::new(), root: tree.root.0, center, scale, repeated };
         if tree.root != Reference::NOTHING {
-            winding.root = winding.sum_up(tree, geometry, tree.root).1;
+            winding.root = winding.sum_up(tree, geometry, tree.root, &mut tree.told()).1;
         }
         winding
     }
@@ -112,19 +120,28 @@ impl Winding {
         tree: &WideBvh,
         geometry: &G,
         reference: Reference,
+        told: &mut Told<'_>,
     ) -> (Sums, u32) {
         let mut sums = Sums::NONE;
         if reference.is_leaf() {
             let block = tree.block(reference);
-            for &primitive in &block.primitives[..reference.count()] {
-                sums.join(&sums_of(geometry, primitive));
+            let mut repeated = 0;
+            for (lane, &primitive) in block.primitives[..reference.count()].iter().enumerate() {
+                if told.is_new(primitive) {
+                    sums.join(&sums_of(geometry, primitive));
+                } else {
+                    repeated |= 1 << lane;
+                }
+            }
+            if repeated != 0 {
+                self.repeated.insert(reference.0, repeated);
             }
             return (sums, reference.0);
         }
         let number = self.nodes.len();
         self.nodes.push(Children::NONE);
         for (lane, (_, child)) in tree.node(reference).children().enumerate() {
-            let (child_sums, child) = self.sum_up(tree, geometry, child);
+            let (child_sums, child) = self.sum_up(tree, geometry, child, told);
             let (center, radius) = child_sums.center_and_radius();
             let center = scale(self.scale, sub(center, self.center));
             let area = scale(self.scale * self.scale, child_sums.normals);
@@ -176,7 +193,11 @@ impl Winding {
             let leaf = Reference(item);
             let block = tree.block(leaf);
             let others = super::step::others(geometry, &block.primitives, leaf);
-            near += half_angles(block, leaf.lanes() & !others, seen_from);
+            let repeated = match self.repeated.is_empty() {
+                true => 0,
+                false => self.repeated.get(&leaf.0).copied().unwrap_or(0),
+            };
+            near += half_angles(block, leaf.lanes() & !others & !repeated, seen_from);
             for lane in super::search::lanes(others) {
                 ones += geometry.winding_number(block.primitives[lane], point);
             }

@@ -1,8 +1,11 @@
 //! The frame of a packet: the rays' common point at zero, the main axis of their directions as depth. There a ray is a point of the plane.
 
+use super::groups::SLACK;
 use crate::Vec3;
+use crate::build::part_margin::DISTANCE_ERROR;
 use crate::geometry::TriangleBlock;
 use crate::simd::Simd;
+use crate::structures::wide::parts::Parts;
 
 /// Where a packet's rays start, or end, and along which axis they run.
 ///
@@ -17,6 +20,10 @@ pub(super) struct Frame {
     pub(super) origin: [f32; 3],
     /// How far any ray passes by that point at most, along each axis; of parallel rays how far any is off by rounding.
     pub(super) offset: f32,
+    /// By how much boxes count as larger beside that: see [`Parts::margin`].
+    pub(super) margin: f32,
+    /// By how much of themselves the far ends of intervals of depths are lengthened.
+    pub(super) slack: f32,
     /// Of parallel rays: how much their other two coordinates grow per depth.
     pub(super) shear: [f32; 2],
     /// And the largest coordinate that any starts at.
@@ -34,18 +41,29 @@ impl Frame {
             sign,
             origin: axes.map(|axis| origin[axis]),
             offset,
+            margin: 0.0,
+            slack: SLACK,
             shear: [0.0; 2],
             farthest: 0.0,
         }
     }
 
-    /// The smallest and largest coordinates of sixteen boxes, given as planes by axis and side, seen in this frame; a little larger by what the rays miss the
-    /// common point by.
+    /// Makes it fit for a tree with parts of triangles, of rays that start up to `distance` from the tree's centre.
+    #[inline(always)]
+    pub(super) fn widen_for_parts(&mut self, parts: &Parts, distance: f32) {
+        if parts.exist() {
+            self.margin = parts.margin_at(distance);
+            self.slack = DISTANCE_ERROR;
+        }
+    }
+
+    /// The smallest and largest coordinates of sixteen boxes, given as planes by axis and side, seen in this frame; larger by what the rays miss the
+    /// common point by, and by the margin.
     #[inline(always)]
     pub(super) fn boxes<S: Simd>(&self, simd: S, planes: &[[[f32; 16]; 2]; 3]) -> [[S::F16; 3]; 2] {
         let [first, second, third] = self.axes.map(|axis| &planes[axis]);
         let [x, y, z] = self.origin;
-        let offset = self.offset;
+        let offset = self.offset + self.margin;
         let (low_x, high_x) = (simd.splat16(x + offset), simd.splat16(x - offset));
         let (low_y, high_y) = (simd.splat16(y + offset), simd.splat16(y - offset));
         let (z, sign, depth_offset) =

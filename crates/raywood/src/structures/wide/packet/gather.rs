@@ -7,6 +7,7 @@ use super::waiting::Waiters;
 use super::{GROUP, Groups, NONE, Packet, RAYS};
 use crate::Ray;
 use crate::simd::{Float, Simd};
+use crate::structures::wide::WideBvh;
 use crate::structures::wide::source::{Common, Source};
 
 /// Rays that rise more steeply against the packet's main axis do not come with it.
@@ -31,13 +32,13 @@ pub(super) const NUMBERS: [[u8; GROUP]; GROUP] = {
 
 impl Packet {
     /// Makes a packet of those that [wait](Self::waiting) of at most 256 rays. These wait no longer then, and the answer is what they have in common. If
-    /// too few have anything in common there is no packet. `reach` is that of the tree, which parallel rays need to know.
+    /// too few have anything in common there is no packet.
     #[inline(always)]
     pub(super) fn gather<S: Simd, R: Source, const ANY: bool>(
         &mut self,
         simd: S,
         rays: &R,
-        reach: f32,
+        tree: &WideBvh,
     ) -> Option<Common> {
         let waiting = self.waiting;
         let waiters = Waiters::new(rays, &waiting);
@@ -51,11 +52,11 @@ impl Packet {
         // Known beforehand wherever it can be: the loop below is made for one kind then.
         let kind = R::COMMON.unwrap_or(kind);
         if ANY && R::COMMON.is_none() && kind == Common::Direction {
-            self.gather_parallel(simd, rays, (point, direction), reach);
+            self.gather_parallel(simd, rays, (point, direction), tree);
             return self.arrange::<S, BlockedParallel>(simd).then_some(kind);
         }
         if !ANY && R::COMMON.is_none() && kind == Common::Image {
-            self.gather_image(simd, rays, point, offset, direction);
+            self.gather_image(simd, rays, (point, offset), direction, tree);
             return self.arrange::<S, Reflected>(simd).then_some(kind);
         }
         // Rays with a common end are looked at from there.
@@ -72,7 +73,8 @@ impl Packet {
         let allowed = simd.splat16(self.frame.offset);
         let origin = [simd.splat16(point.x), simd.splat16(point.y), simd.splat16(point.z)];
         let [x_axis, y_axis, z_axis] = self.frame.axes;
-        let (mut bounded, mut latest) = (0, zero);
+        let [center_x, center_y, center_z] = tree.parts.center.to_array();
+        let (mut bounded, mut latest, mut farthest) = (0, zero, zero);
         for group in 0..GROUP {
             let wanted = self.waiting.rays[group];
             self.members[group] = 0;
@@ -117,6 +119,14 @@ impl Packet {
                 & passed[2].abs().less_or_equal(allowed);
             self.members[group] = members;
 
+            // How far from the tree they start, as far as that is not known.
+            if kind == Common::Target && tree.parts.exist() {
+                let x = (ox - simd.splat16(center_x)).abs();
+                let y = (oy - simd.splat16(center_y)).abs();
+                let z = (oz - simd.splat16(center_z)).abs();
+                farthest = farthest.larger(zero.replaced(members, x.larger(y).larger(z)));
+            }
+
             // Their slopes, and how far they reach.
             latest = latest.larger(zero.replaced(members, z * from_start));
             bounded |= members & end.less(never);
@@ -136,6 +146,9 @@ impl Packet {
             self.nearest[group] = limit.to_array();
             self.primitives[group] = [f32::from_bits(NONE); GROUP];
         }
+        let from_center = (point - tree.parts.center).abs().max_element();
+        let distance = from_center.max(farthest.greatest());
+        self.frame.widen_for_parts(&tree.parts, distance);
         self.is_bounded = bounded != 0;
         self.start = 1.0 / latest.greatest();
         self.numbers = NUMBERS;
@@ -173,7 +186,7 @@ impl Packet {
     /// Computes what the rays of each group have in common.
     #[inline(always)]
     fn measure<S: Simd, K: Kind>(&mut self, simd: S) {
-        self.groups = Groups::NONE;
+        self.groups = Groups::with_slack(self.frame.slack);
         let above = simd.splat16(f32::INFINITY);
         let below = simd.splat16(f32::NEG_INFINITY);
         let groups = &mut self.groups;

@@ -4,8 +4,8 @@ use super::frame::Frame;
 use super::kind::Kind;
 use crate::simd::{Float, Simd};
 
-/// By how much of itself the far end of an interval of depths is lengthened against rounding: every depth is off by five roundings at most.
-const SLACK: f32 = 1.0 / (1 << 20) as f32;
+/// By how much of itself the far end of an interval of depths is lengthened at least, against rounding: every depth is off by five roundings at most.
+pub(super) const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// The relative error of halves of sums and differences, with room to spare.
 const HALVING_ERROR: f32 = 2.0 * f32::EPSILON;
@@ -40,6 +40,8 @@ pub(super) struct Groups {
     whole_reciprocals: [[f32; 2]; 2],
     pub(super) whole_center: [f32; 2],
     pub(super) whole_extent: [f32; 2],
+    /// By how much of themselves the far ends of intervals of depths are lengthened.
+    pub(super) slack: f32,
     /// The groups that have rays for which anything still counts.
     pub(super) live: u32,
 }
@@ -60,8 +62,15 @@ impl Groups {
         whole_reciprocals: [[0.0; 2]; 2],
         whole_center: [0.0; 2],
         whole_extent: [0.0; 2],
+        slack: SLACK,
         live: 0,
     };
+
+    /// No groups yet, of a packet with such a slack.
+    #[inline(always)]
+    pub(super) fn with_slack(slack: f32) -> Self {
+        Self { slack, ..Self::NONE }
+    }
 
     /// Computes what follows from the groups' slopes.
     #[inline(always)]
@@ -104,7 +113,7 @@ impl Groups {
     /// Takes the depths at which the groups' rays start.
     #[inline(always)]
     pub(super) fn begin_at<S: Simd>(&mut self, simd: S, depths: S::F16) {
-        let from = depths * simd.splat16(1.0 - SLACK);
+        let from = depths * simd.splat16(1.0 - self.slack);
         self.from = from.to_array();
         self.whole_from = from.least();
     }
@@ -125,7 +134,7 @@ impl Groups {
                 far = far.replaced(!begins, depth.smaller(far));
             }
         }
-        near.less_or_equal(far * simd.splat16(1.0 + SLACK)) & self.live
+        near.less_or_equal(far * simd.splat16(1.0 + self.slack)) & self.live
     }
 
     /// Which of sixteen boxes, given by their smallest and largest coordinates in the packet's frame, the packet may meet, and from which depth on.
@@ -149,7 +158,7 @@ impl Groups {
                 }
             }
         }
-        (near.less_or_equal(far * simd.splat16(1.0 + SLACK)), near)
+        (near.less_or_equal(far * simd.splat16(1.0 + self.slack)), near)
     }
 
     /// The groups for which depths from `near` on still count.
@@ -157,8 +166,8 @@ impl Groups {
     pub(super) fn reaching<S: Simd, K: Kind>(&self, simd: S, frame: &Frame, near: f32) -> u32 {
         let far = simd.load16(&self.far);
         let far = match K::PARALLEL {
-            true => far + simd.splat16(frame.offset),
-            false => far * simd.splat16(1.0 + SLACK),
+            true => far + simd.splat16(frame.offset + frame.margin),
+            false => far * simd.splat16(1.0 + self.slack),
         };
         simd.splat16(near).less_or_equal(far) & self.live
     }

@@ -10,6 +10,7 @@ use super::triangles::ROUNDING;
 use super::waiting::Waiters;
 use super::{GROUP, NONE, Packet};
 use crate::simd::{Float, Simd};
+use crate::structures::wide::WideBvh;
 use crate::structures::wide::source::{Common, Source};
 use crate::{Ray, Vec3};
 
@@ -118,9 +119,9 @@ impl Packet {
         &mut self,
         simd: S,
         rays: &R,
-        point: Vec3,
-        allowed: f32,
+        (point, allowed): (Vec3, f32),
         direction: Vec3,
+        tree: &WideBvh,
     ) {
         self.frame = Frame::new(point, 0.0, direction);
         let [x_axis, y_axis, z_axis] = self.frame.axes;
@@ -129,6 +130,7 @@ impl Packet {
             (simd.splat16(0.0), simd.splat16(1.0), simd.splat16(f32::INFINITY));
         let steepest = simd.splat16(STEEPEST);
         let allowed = simd.splat16(allowed);
+        let from_center = (point - tree.parts.center).abs().max_element();
         let point = [simd.splat16(point.x), simd.splat16(point.y), simd.splat16(point.z)];
         let (mut misses, mut farthest) = (zero, zero);
         for group in 0..GROUP {
@@ -177,7 +179,9 @@ impl Packet {
             self.primitives[group] = [f32::from_bits(NONE); GROUP];
         }
         let roundings = MEASURING_ROUNDINGS * ROUNDING;
-        self.frame.offset = misses.greatest() + roundings * farthest.greatest();
+        let farthest = farthest.greatest();
+        self.frame.offset = misses.greatest() + roundings * farthest;
+        self.frame.widen_for_parts(&tree.parts, from_center + farthest);
         self.is_bounded = false;
         self.start = f32::INFINITY;
         self.numbers = NUMBERS;

@@ -158,7 +158,7 @@ pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool
 ) {
     let Scratch { packet, stack } = scratch;
     packet.begin(piece.rays.len());
-    while let Some(common) = packet.gather::<S, R, false>(simd, &piece.rays, piece.tree.reach) {
+    while let Some(common) = packet.gather::<S, R, false>(simd, &piece.rays, piece.tree) {
         // While the packet is under way, the place for its hits arrives.
         hits.prefetch(simd);
         match common {
@@ -187,7 +187,7 @@ pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
 ) {
     let Scratch { packet, stack } = scratch;
     packet.begin(piece.rays.len());
-    while let Some(common) = packet.gather::<S, R, true>(simd, &piece.rays, piece.tree.reach) {
+    while let Some(common) = packet.gather::<S, R, true>(simd, &piece.rays, piece.tree) {
         match common {
             Common::Direction => {
                 packet.trace::<S, G, R, BlockedParallel, FAST>(simd, piece, stack);

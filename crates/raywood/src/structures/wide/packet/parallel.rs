@@ -12,6 +12,7 @@ use super::triangles::{cross, largest, replaced, sub};
 use super::{GROUP, NONE, Packet};
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Simd};
+use crate::structures::wide::WideBvh;
 use crate::structures::wide::source::Source;
 use crate::{Ray, Vec3};
 
@@ -31,14 +32,14 @@ const DEPTH_ROUNDINGS: f32 = 256.0;
 const GREATEST_SLANT: f32 = 65536.0;
 
 impl Packet {
-    /// As [`gather`](Packet::gather), with rays in one `direction` that never end; `reach` is that of the tree.
+    /// As [`gather`](Packet::gather), with rays in one `direction` that never end.
     #[inline(always)]
     pub(super) fn gather_parallel<S: Simd, R: Source>(
         &mut self,
         simd: S,
         rays: &R,
         (origin, direction): (Vec3, Vec3),
-        reach: f32,
+        tree: &WideBvh,
     ) {
         // They are looked at from where they go to.
         self.frame = Frame::new(origin, 0.0, -direction);
@@ -92,8 +93,12 @@ impl Packet {
         }
         self.frame.farthest = farthest.greatest();
         // The root's boxes are as far from the packet's as both are from zero.
-        let reach = reach + origin.abs().max_element() + self.frame.farthest;
+        let reach = tree.reach + origin.abs().max_element() + self.frame.farthest;
         self.frame.offset = ROUNDINGS * ROUNDING * reach;
+        // Shear at most doubles coordinates.
+        let from_center = (origin - tree.parts.center).abs().max_element();
+        let distance = from_center + 2.0 * self.frame.farthest;
+        self.frame.widen_for_parts(&tree.parts, distance);
         self.is_bounded = false;
         self.start = f32::INFINITY;
         self.numbers = NUMBERS;
@@ -125,7 +130,7 @@ impl Groups {
                 (near, far) = (from_high.larger(near), from_low.smaller(far));
             }
         }
-        near.less_or_equal(far + simd.splat16(frame.offset)) & self.live
+        near.less_or_equal(far + simd.splat16(frame.offset + frame.margin)) & self.live
     }
 
     /// Which of sixteen boxes the packet may meet, and from which depth on: as [`met_by_any`](Groups::met_by_any).
@@ -150,7 +155,7 @@ impl Groups {
                 (near, far) = (from_high.larger(near), from_low.smaller(far));
             }
         }
-        (near.less_or_equal(far + simd.splat16(frame.offset)), near)
+        (near.less_or_equal(far + simd.splat16(frame.offset + frame.margin)), near)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{GROUP, Packet, RAYS};
 use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
-use crate::{Ray, Vec3};
+use crate::{BuildOptions, Ray, TriangleMesh, Vec3, WideBvh};
 
 /// Makes a packet of rays. Which of them must be traced otherwise, which groups have rays, and the slopes between which these lie.
 struct Gather<'a> {
@@ -18,14 +18,21 @@ impl Kernel for Gather<'_> {
         let mut packet = Packet::empty();
         packet.begin(self.rays.len());
         if self.any {
-            packet.gather::<S, &[Ray], true>(simd, &self.rays, 10.0);
+            packet.gather::<S, &[Ray], true>(simd, &self.rays, &tree());
         } else {
-            packet.gather::<S, &[Ray], false>(simd, &self.rays, 10.0);
+            packet.gather::<S, &[Ray], false>(simd, &self.rays, &tree());
         }
         let mut rest = Vec::new();
         packet.waiting.append_to(&mut rest, 0);
         (rest, packet.groups.live, packet.groups.whole)
     }
+}
+
+/// A tree that reaches as far as the rays do.
+fn tree() -> WideBvh {
+    let corners = vec![[-10.0, -10.0, 5.0], [10.0, -10.0, 5.0], [0.0, 10.0, 5.0]];
+    let mesh = TriangleMesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");
+    WideBvh::build(&mesh, &BuildOptions::default()).expect("it builds")
 }
 
 /// Sixteen times sixteen rays from a point.
@@ -65,11 +72,11 @@ impl Kernel for GatherAll<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> u32 {
-        let mut packet = Packet::empty();
+        let (tree, mut packet) = (tree(), Packet::empty());
         packet.begin(self.rays.len());
         while match self.any {
-            true => packet.gather::<S, &[Ray], true>(simd, &self.rays, 10.0).is_some(),
-            false => packet.gather::<S, &[Ray], false>(simd, &self.rays, 10.0).is_some(),
+            true => packet.gather::<S, &[Ray], true>(simd, &self.rays, &tree).is_some(),
+            false => packet.gather::<S, &[Ray], false>(simd, &self.rays, &tree).is_some(),
         } {}
         packet.waiting.count()
     }
