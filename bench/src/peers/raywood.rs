@@ -3,7 +3,8 @@
 use std::hint::black_box;
 
 use raywood::{
-    BuildOptions, HitColumns, Ray, Structure, StructureKind, TriangleMesh, TriangleTest, Vec3,
+    BuildOptions, BuildPreset, HitColumns, Ray, Structure, StructureKind, TriangleMesh,
+    TriangleTest, Vec3,
 };
 
 use super::each_ray::{Batch, EachRay};
@@ -14,7 +15,7 @@ use crate::ray_sets::RaySet;
 
 pub(super) const ENTRY: PeerEntry = PeerEntry {
     name: "raywood",
-    settings: "bvh-wide (which Bvh is) and bvh-sah-binned (modes batch and single), default options (bvh-wide with reinsertion); closest hits with t, u, v and primitive; \
+    settings: "bvh-wide (which Bvh is) by the preset best, with reinsertion and spatial splits, and bvh-sah-binned (modes batch and single) by default options; closest hits with t, u, v and primitive; \
         fast modes with the triangle test of Moeller and Trumbore",
     build,
 };
@@ -23,7 +24,7 @@ fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
     let bvh = Structure::build(StructureKind::BvhSahBinned, mesh, &BuildOptions::default())
         .map_err(|error| error.to_string())?;
     let wide = |triangle_test: TriangleTest| {
-        let options = BuildOptions { triangle_test, ..BuildOptions::default() };
+        let options = BuildOptions { triangle_test, ..BuildPreset::Best.options() };
         Structure::build(StructureKind::BvhWide, mesh, &options).map_err(|error| error.to_string())
     };
     let (wide, fast) = (wide(TriangleTest::Watertight)?, wide(TriangleTest::Fast)?);
