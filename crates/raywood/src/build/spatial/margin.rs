@@ -32,7 +32,7 @@ pub(crate) fn center_and_half(bounds: &Aabb) -> (Vec3, f32) {
 }
 
 /// The margin of parts in a tree of which this is the box.
-pub(super) fn margin(bounds: &Aabb) -> f32 {
+pub(crate) fn margin(bounds: &Aabb) -> f32 {
     let (_, half) = center_and_half(bounds);
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
     PER_DISTANCE * (USUAL_DISTANCE + 1.0) * half + ROUNDING * largest

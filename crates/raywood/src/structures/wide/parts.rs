@@ -100,3 +100,101 @@ impl<'t> Told<'t> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structures::AccelerationStructure;
+    use crate::structures::wide::WideBvh;
+    use crate::structures::wide::node::Reference;
+    use crate::{Aabb, BuildOptions, Geometry, Ray, TriangleMesh};
+
+    /// Random numbers from -1 to 1.
+    fn random(seed: u32) -> impl FnMut() -> f32 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+        }
+    }
+
+    const BEAMS: u32 = 500;
+
+    /// Beams that run through each other askew.
+    fn beams() -> TriangleMesh {
+        let mut random = random(3);
+        let mut corners = Vec::new();
+        for _ in 0..BEAMS {
+            let mut point = || Vec3::new(random(), random(), random());
+            let (from, to) = (point(), point());
+            corners.extend([from, to, to + 0.1 * point()]);
+        }
+        let triangles = (0..BEAMS).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        TriangleMesh::new(corners, triangles).expect("finite")
+    }
+
+    /// Where the edges of a triangle cross the planes between its parts: there the boxes of two parts only meet at a corner.
+    fn corners_of_parts(mesh: &TriangleMesh, primitive: u32, bounds: &Aabb) -> Vec<(usize, Vec3)> {
+        let own = mesh.bounds(primitive);
+        let margin = part_margin::margin(&mesh.total_bounds());
+        let corners = mesh.corners(primitive);
+        let mut found = Vec::new();
+        for axis in 0..3 {
+            for plane in [bounds.min[axis] + margin, bounds.max[axis] - margin] {
+                if own.min[axis] >= plane || plane >= own.max[axis] {
+                    continue;
+                }
+                for edge in 0..3 {
+                    let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
+                    let share = (plane - a[axis]) / (b[axis] - a[axis]);
+                    if 0.0 < share && share < 1.0 {
+                        found.push((axis, a + share * (b - a)));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn no_hit_is_lost_where_parts_meet() {
+        let mesh = beams();
+        let plain = WideBvh::build(&mesh, &BuildOptions::default()).expect("it builds");
+        let options = BuildOptions { spatial_splits: 4.0, ..Default::default() };
+        let cut = WideBvh::build(&mesh, &options).expect("it builds");
+        let mut random = random(9);
+        let (mut hits, mut targets) = (0, 0);
+        let mut pending = vec![(cut.root, cut.bounds)];
+        while let Some((reference, bounds)) = pending.pop() {
+            if reference == Reference::NOTHING {
+                continue;
+            }
+            if !reference.is_leaf() {
+                pending
+                    .extend(cut.node(reference).children().map(|(bounds, child)| (child, bounds)));
+                continue;
+            }
+            for &primitive in &cut.block(reference).primitives[..reference.count()] {
+                for (axis, corner) in corners_of_parts(&mesh, primitive, &bounds) {
+                    targets += 1;
+                    for trial in 0..200 {
+                        // Nearly along the plane or one of the others, so that the slack of the box test does not help; a few roundings beside the corner.
+                        let mut direction = [random(), random(), random()];
+                        let flat = [0.0, 1e-6, 1e-3, 1.0][trial % 4];
+                        direction[axis] *= flat;
+                        direction[(axis + 1 + trial / 4 % 2) % 3] *= flat;
+                        let direction = Vec3::from(direction).normalize_or_zero();
+                        let distance = [1.0, 6.0, 60.0, 2000.0][trial / 8 % 4];
+                        let beside = distance * 4.0 * f32::EPSILON;
+                        let beside = beside * Vec3::new(random(), random(), random());
+                        let ray = Ray::new(corner + beside - distance * direction, direction);
+                        let expected = plain.intersect(&mesh, &ray, &mut ());
+                        hits += usize::from(expected.is_some_and(|hit| hit.primitive == primitive));
+                        assert_eq!(cut.intersect(&mesh, &ray, &mut ()), expected, "{ray:?}");
+                    }
+                }
+            }
+        }
+        assert!(targets > 100 && hits > 10 * targets, "{hits} hits of {targets} targets");
+    }
+}
