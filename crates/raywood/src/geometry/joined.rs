@@ -50,6 +50,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
+        match self.in_second(primitive) {
+            None => self.first.bounding_ball(primitive),
+            Some(primitive) => self.second.bounding_ball(primitive),
+        }
+    }
+
     fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
         match self.in_second(primitive) {
             None => self.first.overlaps(primitive, cell),

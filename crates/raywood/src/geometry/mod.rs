@@ -74,6 +74,16 @@ pub trait Geometry: Sync {
         None
     }
 
+    /// The centre and radius of a ball that holds the primitive, so that rays that pass by it need not ask [`intersect`](Self::intersect). Not asked of
+    /// [triangles](Self::triangle).
+    ///
+    /// The line of a ray for which `intersect` reports a hit must pass through the ball, or by it by no more than a rounding of its distance from the ray's
+    /// origin. The default knows of none, and every ray asks.
+    fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
+        let _ = primitive;
+        None
+    }
+
     /// Whether a part of the primitive may lie in `cell`: what structures that divide space ask most often.
     ///
     /// It must hold wherever [`clipped_bounds`](Self::clipped_bounds) would have to hold a point, and may hold elsewhere. The default clips; a
@@ -157,6 +167,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline(always)]
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         (**self).triangle(primitive)
+    }
+
+    fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
+        (**self).bounding_ball(primitive)
     }
 
     #[inline(always)]

@@ -115,6 +115,10 @@ impl Geometry for Spheres {
         sphere_bounds(center, radius)
     }
 
+    fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
+        Some(self.spheres[primitive as usize])
+    }
+
     /// Whether the surface passes through the cell: it does not where the cell lies inside, or beside the sphere in a corner of its box.
     fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
         let (center, radius) = self.spheres[primitive as usize];

@@ -15,7 +15,8 @@ pub(crate) const LANES: usize = 8;
 
 /// Eight triangles, coordinate by coordinate, and their numbers: five cache lines.
 ///
-/// Lanes without a triangle hold zeros; which these are is known to whoever refers to the block.
+/// Lanes without a primitive hold zeros; which these are is known to whoever refers to the block. Of a primitive that is no triangle there is a ball around it:
+/// its centre in place of the first corner, its radius as the second's first coordinate; the third corner is infinitely far away, as that of no triangle is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct TriangleBlock {
@@ -60,6 +61,27 @@ impl TriangleBlock {
                 axis[lane] = coordinate;
             }
         }
+    }
+
+    /// Puts a primitive that is no triangle into a lane, and a ball around it.
+    pub(crate) fn set_other(&mut self, lane: usize, primitive: u32, ball: Option<(Vec3, f32)>) {
+        let (center, radius) = ball.unwrap_or((Vec3::ZERO, f32::INFINITY));
+        let corners = [center, Vec3::new(radius, 0.0, 0.0), Vec3::splat(f32::INFINITY)];
+        self.set(lane, primitive, corners);
+    }
+
+    /// The lanes that hold primitives that are no triangles.
+    #[inline(always)]
+    pub(crate) fn others(&self) -> u32 {
+        let infinite = |lane: usize| u32::from(self.corners[2][0][lane] == f32::INFINITY) << lane;
+        (0..LANES).fold(0, |set, lane| set | infinite(lane))
+    }
+
+    /// The ball around the primitive in a lane that is no triangle: its centre and radius.
+    #[inline(always)]
+    pub(crate) fn ball(&self, lane: usize) -> (Vec3, f32) {
+        let [center, size, _] = self.corners(lane);
+        (center, size.x)
     }
 
     /// The corners of the triangle in a lane.

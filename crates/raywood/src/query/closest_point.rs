@@ -117,7 +117,7 @@ impl<G: Geometry> Kernel for ClosestPoints<'_, G> {
             if point.is_finite() {
                 nearest.begin(point, Frame::new(point, tree.reach()));
                 // A search for what is closest goes on to its end.
-                let _ = tree.search(simd, geometry, stack, &mut nearest);
+                let _ = tree.search(simd, stack, &mut nearest);
                 nearest.decide();
                 *answer = nearest.best;
             }

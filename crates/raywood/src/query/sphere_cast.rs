@@ -85,7 +85,7 @@ impl<G: Geometry> Kernel for SphereCast<'_, G> {
             first.hit.map_or(ray.t_max, |hit| hit.t)
         });
         // It goes on to the end: what comes later may be touched earlier.
-        let _ = tree.search(simd, geometry, &mut SearchStack::new(tree), &mut sweep);
+        let _ = tree.search(simd, &mut SearchStack::new(tree), &mut sweep);
         first.hit
     }
 }

@@ -119,7 +119,7 @@ where
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
         let Self { tree, geometry, touch, visit } = self;
         let mut touching = Touching { geometry, touch, told: tree.told(), visit };
-        tree.search(simd, geometry, &mut SearchStack::new(tree), &mut touching)
+        tree.search(simd, &mut SearchStack::new(tree), &mut touching)
     }
 }
 

@@ -171,14 +171,8 @@ impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FA
                 let place = place as usize;
                 let flight = &mut flights[place];
                 let leaf = Reference(currents[place]);
-                let found = leaf_hits::<S, G, FAST>(
-                    simd,
-                    tree,
-                    geometry,
-                    leaf,
-                    &flight.ray,
-                    flight.nearest.t_max(),
-                );
+                let found =
+                    leaf_hits::<S, FAST>(simd, tree, leaf, &flight.ray, flight.nearest.t_max());
                 let some = found.hit | found.doubtful != 0;
                 hits[count] = (place, found);
                 count += usize::from(some);

@@ -42,7 +42,7 @@ pub(super) fn build<G: Geometry>(
         _ => {
             let primitives = wide.primitives(0);
             let corners: Vec<_> = primitives.iter().map(|&p| geometry.triangle(p)).collect();
-            (leaf(primitives, &corners, all), 0)
+            (wide.leaf(primitives, &corners, all), 0)
         }
     });
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
@@ -109,7 +109,7 @@ impl<G: Geometry> Wide<'_, G> {
                 let primitives = self.primitives(number);
                 let (corners, others) = unused.split_at(primitives.len());
                 unused = others;
-                leaf(primitives, corners, below.take(LEAF_LINES))
+                self.leaf(primitives, corners, below.take(LEAF_LINES))
             } else {
                 let place = below.take(NODE_LINES);
                 let child = Reference::node(place.first());
@@ -153,22 +153,31 @@ impl<G: Geometry> Wide<'_, G> {
         let range = first.left_first() as usize..(last.left_first() + last.count()) as usize;
         &self.tree.primitive_indices()[range]
     }
-}
 
-/// Fills the place of a leaf of some primitives, which are triangles of these corners or none.
-fn leaf(primitives: &[u32], corners: &[Option<[Vec3; 3]>], mut place: Part<'_>) -> Reference {
-    let mut block = TriangleBlock::default();
-    let mut mixed = false;
-    let mut lane = 0;
-    for (place, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
-        if primitives[..place].contains(&primitive) {
-            continue;
+    /// Fills the place of a leaf of some primitives, which are triangles of these corners or none.
+    fn leaf(
+        &self,
+        primitives: &[u32],
+        corners: &[Option<[Vec3; 3]>],
+        mut place: Part<'_>,
+    ) -> Reference {
+        let mut block = TriangleBlock::default();
+        let mut mixed = false;
+        let mut lane = 0;
+        for (place, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
+            // Of a cut triangle several parts may have come together.
+            if primitives[..place].contains(&primitive) {
+                continue;
+            }
+            mixed |= triangle.is_none();
+            match *triangle {
+                Some(corners) => block.set(lane, primitive, corners),
+                None => block.set_other(lane, primitive, self.geometry.bounding_ball(primitive)),
+            }
+            lane += 1;
         }
-        mixed |= triangle.is_none();
-        block.set(lane, primitive, triangle.unwrap_or_default());
-        lane += 1;
+        let leaf = Reference::leaf(place.first(), lane, mixed);
+        place.put(block);
+        leaf
     }
-    let leaf = Reference::leaf(place.first(), lane, mixed);
-    place.put(block);
-    leaf
 }

@@ -45,7 +45,7 @@ impl<G: Geometry, C: Chooser, const ANY: bool, const FAST: bool> Kernel
             if current.is_leaf() {
                 let block = tree.block(current);
                 let limit = nearest.t_max();
-                let hits = leaf_hits::<S, G, FAST>(simd, tree, geometry, current, ray, limit);
+                let hits = leaf_hits::<S, FAST>(simd, tree, current, ray, limit);
                 let (inside, t) = if FAST {
                     (hits.hit, TriangleBlock::distances(simd, &hits))
                 } else {

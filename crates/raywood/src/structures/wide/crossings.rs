@@ -51,7 +51,7 @@ impl<G: Geometry, V: HitVisitor> Kernel for Crossings<'_, G, V> {
             }
             if current.is_leaf() {
                 let block = tree.block(current);
-                let others = others(geometry, &block.primitives, current);
+                let others = others(block, current);
                 let triangles = current.lanes() & !others;
                 let hits = block.intersect(simd, ray, triangles, visitor.limit());
                 if hits.hit != 0 {

@@ -1,5 +1,6 @@
 //! The wide tree: sixteen children a node and eight triangles a leaf, so that one vector instruction tests them all.
 
+mod balls;
 mod batch;
 mod build;
 mod check;

@@ -8,9 +8,9 @@ use std::ops::ControlFlow;
 use super::WideBvh;
 use super::node::{Reference, WideNode};
 use super::single::SmallStack;
+use crate::Aabb;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Simd};
-use crate::{Aabb, Geometry};
 
 /// The boxes of sixteen [children](planes), by axis and side: first the smallest, then the largest coordinates. A child that is not there has an inverted infinite
 /// box.
@@ -56,10 +56,9 @@ pub(crate) trait Query<'t> {
 impl WideBvh {
     /// Walks through the tree for a query. Keys are finite.
     #[inline(always)]
-    pub(crate) fn search<'t, S: Simd, G: Geometry, Q: Query<'t>>(
+    pub(crate) fn search<'t, S: Simd, Q: Query<'t>>(
         &'t self,
         simd: S,
-        geometry: &G,
         stack: &mut SearchStack,
         query: &mut Q,
     ) -> ControlFlow<()> {
@@ -71,7 +70,7 @@ impl WideBvh {
             }
             if current.is_leaf() {
                 let block = self.block(current);
-                let others = super::step::others(geometry, &block.primitives, current);
+                let others = super::step::others(block, current);
                 let leaf = Leaf { block, triangles: current.lanes() & !others, others };
                 query.leaf(simd, leaf)?;
             } else {

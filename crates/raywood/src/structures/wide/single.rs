@@ -67,7 +67,7 @@ fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
         probe.nodes(1);
         if current.is_leaf() {
             probe.primitives(current.count());
-            let hits = leaf_hits::<S, G, FAST>(simd, tree, geometry, current, ray, nearest.t_max());
+            let hits = leaf_hits::<S, FAST>(simd, tree, current, ray, nearest.t_max());
             take_closest::<S, G, FAST>(simd, tree, geometry, current, &hits, ray, &mut nearest);
         } else {
             let node = tree.node(current);
@@ -113,7 +113,7 @@ impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
             probe.nodes(1);
             if current.is_leaf() {
                 probe.primitives(current.count());
-                let hits = leaf_hits::<S, G, FAST>(simd, tree, geometry, current, &ray, ray.t_max);
+                let hits = leaf_hits::<S, FAST>(simd, tree, current, &ray, ray.t_max);
                 if any_blocks::<S, G, FAST>(simd, tree, geometry, current, &hits, &ray) {
                     return true;
                 }

@@ -1,6 +1,7 @@
 //! The two steps of a traversal: a ray against the children of a node, and against the primitives of a leaf.
 
 use super::WideBvh;
+use super::balls::balls_met;
 use super::node::Reference;
 use crate::geometry::{BlockHits, LANES, TriangleBlock};
 use crate::simd::Simd;
@@ -10,23 +11,24 @@ use crate::{Geometry, PreparedRay};
 /// What the vector test says of the primitives of a leaf: triangles that are certainly hit no further than `limit`, and in
 /// [`doubtful`](BlockHits::doubtful) all that must be tested one by one.
 #[inline(always)]
-pub(super) fn leaf_hits<S: Simd, G: Geometry, const FAST: bool>(
+pub(super) fn leaf_hits<S: Simd, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
-    geometry: &G,
     leaf: Reference,
     ray: &PreparedRay,
     limit: f32,
 ) -> BlockHits {
     let block = tree.block(leaf);
-    let others = others(geometry, &block.primitives, leaf);
+    let others = others(block, leaf);
     let triangles = leaf.lanes() & !others;
     let mut hits = if FAST {
         block.intersect_fast(simd, ray, triangles, limit)
     } else {
         block.intersect(simd, ray, triangles, limit)
     };
-    hits.doubtful |= others;
+    if others != 0 {
+        hits.doubtful |= balls_met(simd, block, others, ray);
+    }
     hits
 }
 
@@ -103,12 +105,8 @@ fn doubtful_blocks<G: Geometry>(
 
 /// The lanes of a leaf that hold primitives which are no triangles.
 #[inline(always)]
-pub(super) fn others<G: Geometry>(geometry: &G, primitives: &[u32], leaf: Reference) -> u32 {
-    if !leaf.is_mixed() {
-        return 0;
-    }
-    let is_other = |lane: &usize| geometry.triangle(primitives[*lane]).is_none();
-    lanes(leaf.lanes()).filter(is_other).fold(0, |set, lane| set | 1 << lane)
+pub(super) fn others(block: &TriangleBlock, leaf: Reference) -> u32 {
+    if leaf.is_mixed() { block.others() } else { 0 }
 }
 
 /// The lanes of a set.

@@ -192,7 +192,7 @@ impl Winding {
             }
             let leaf = Reference(item);
             let block = tree.block(leaf);
-            let others = super::step::others(geometry, &block.primitives, leaf);
+            let others = super::step::others(block, leaf);
             let repeated = match self.repeated.is_empty() {
                 true => 0,
                 false => self.repeated.get(&leaf.0).copied().unwrap_or(0),

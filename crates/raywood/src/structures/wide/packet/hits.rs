@@ -162,10 +162,9 @@ impl Packet {
         doubtful: u32,
     ) {
         let block = piece.tree.block(leaf);
-        let is_triangle =
-            !leaf.is_mixed() || piece.geometry.triangle(block.primitives[lane]).is_some();
-        let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
+        let is_triangle = !leaf.is_mixed() || block.others() >> lane & 1 == 0;
         let mut doubtful = doubtful;
+        let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
         let plane = match plane {
             Some(plane) if doubtful.count_ones() >= SEVERAL => {
                 let (packet, rays) = (&*self, &piece.rays);

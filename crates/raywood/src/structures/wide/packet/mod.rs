@@ -5,6 +5,7 @@
 //! Wagner, "Interactive Rendering with Coherent Ray Tracing", CGF 2001; Reshetov, Soupikov and Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH
 //! 2005; Fuetterling, Lojewski, Pfreundt and Ebert, "Efficient Ray Tracing Kernels for Modern CPU Architectures", JCGT 2015.
 
+mod balls;
 mod finish;
 mod frame;
 mod gather;
@@ -342,7 +343,7 @@ impl Packet {
         let mut others = 0;
         for (place, leaf) in leaves.iter().enumerate() {
             if leaf.groups != 0 {
-                let here = step::others(piece.geometry, &blocks[place].primitives, leaf.reference);
+                let here = step::others(blocks[place], leaf.reference);
                 others |= here << (place * LANES);
                 lanes |= (leaf.reference.lanes() & !here) << (place * LANES);
             }
@@ -383,13 +384,19 @@ impl Packet {
             let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
             let Leaf { reference, groups } = leaves[lane / LANES];
-            touched |= groups;
+            let is_other = others >> lane & 1 == 1;
+            let ball = self.ball(blocks[lane / LANES], lane % LANES);
             for group in (0..GROUP).filter(|group| groups >> group & 1 == 1) {
                 let mut members = self.members[group];
-                if K::PARALLEL && others >> lane & 1 == 0 {
+                if is_other && !K::PARALLEL {
+                    members &= self.meeting_ball(simd, &ball, group);
+                } else if !is_other && K::PARALLEL {
                     members &= triangles.passing(simd, lane, &self.slopes, group);
                 }
-                self.settle::<G, R, K>(piece, reference, lane % LANES, group, members);
+                if members != 0 {
+                    touched |= 1 << group;
+                    self.settle::<G, R, K>(piece, reference, lane % LANES, group, members);
+                }
             }
         }
 
