@@ -71,8 +71,9 @@ pub(super) struct Packet {
     is_later: bool,
     /// Which ray of the slice each one is.
     numbers: [[u8; GROUP]; GROUP],
-    /// How many triangles each group was tested against.
+    /// How many triangles each group was tested against, and against how many it may be.
     work: [f32; GROUP],
+    most_work: [f32; GROUP],
     /// The rays of each group that must be traced alone after all.
     alone: [u32; GROUP],
     /// The rays of each group that are in the packet.
@@ -98,8 +99,12 @@ const TOLERANCE: f32 = 1.0 / 4096.0;
 /// The same where depths need not be known, only whether they are less than another one.
 const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 
-/// A group is given up when it was tested against more triangles than this: about as long does it take to trace its rays one by one.
-const MOST_WORK: f32 = 128.0;
+/// A group is given up when it was tested against more triangles than this for each of its rays of which not all is known: about as long does it take to
+/// trace these one by one.
+const MOST_WORK: f32 = 8.0;
+
+/// The same where any hit will do, which rays find sooner one by one.
+const MOST_WORK_FOR_ANY: f32 = 4.0;
 
 /// Sixteen bits.
 const ALL: u32 = 0xffff;
@@ -220,6 +225,7 @@ impl Packet {
             is_later: false,
             numbers: [[0; GROUP]; GROUP],
             work: [0.0; GROUP],
+            most_work: [0.0; GROUP],
             alone: [0; GROUP],
             members: [0; GROUP],
             pairs: [0; 1 + (TRIANGLES + 1) * GROUP],
@@ -246,6 +252,9 @@ impl Packet {
         }
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
+        for (most, members) in self.most_work.iter_mut().zip(&self.members) {
+            *most = most_work::<K>(members.count_ones());
+        }
         let near = if K::PARALLEL { f32::NEG_INFINITY } else { 0.0 };
         stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near };
         let mut top = 1;
@@ -405,13 +414,18 @@ impl Packet {
         while left != 0 {
             let group = left.trailing_zeros() as usize % GROUP;
             left &= left - 1;
-            self.groups.least[group] = simd.load16(&self.nearest[group]).least();
+            let nearest = simd.load16(&self.nearest[group]);
+            self.groups.least[group] = nearest.least();
+            if K::ANY {
+                let left = nearest.less(simd.splat16(f32::INFINITY));
+                self.most_work[group] = most_work::<K>(left.count_ones());
+            }
         }
         self.groups.look_again::<S, K>(simd);
 
         // Give up groups that take more work than their rays would take one by one.
         self.work = work.to_array();
-        let too_much = simd.splat16(MOST_WORK).less(work) & self.groups.live;
+        let too_much = simd.load16(&self.most_work).less(work) & self.groups.live;
         let mut left = too_much;
         while left != 0 {
             let group = left.trailing_zeros() as usize % GROUP;
@@ -420,4 +434,11 @@ impl Packet {
         }
         self.groups.live &= !too_much;
     }
+}
+
+/// Against how many triangles a group may be tested of which so many rays have not found what they look for.
+#[inline(always)]
+fn most_work<K: Kind>(rays: u32) -> f32 {
+    let each = if K::ANY { MOST_WORK_FOR_ANY } else { MOST_WORK };
+    each * rays as f32
 }
