@@ -143,7 +143,7 @@ impl<G: Geometry> Bvh<G> {
     pub fn occluded_towards(&self, target: Vec3, end: f32, points: &[Vec3], occluded: &mut [bool]) {
         assert_eq!(points.len(), occluded.len(), "as many answers as points");
         parallel::fill_pieces(points, occluded, |points, occluded| {
-            self.tree.occluded_towards(&self.geometry, (target, end), points, occluded);
+            self.tree.occluded_towards(&self.geometry, (target, end), (points, &[]), occluded);
         });
     }
 

@@ -71,12 +71,13 @@ pub trait AccelerationStructure: Send + Sync {
         }
     }
 
-    /// Whether anything lies between points and one that they look at, up to a share of the way, on this thread. Both slices have the same length.
+    /// Whether anything lies between points and one that they look at, up to a share of the way, on this thread. There are as many answers as points, and
+    /// as many numbers of primitives that the points lie beside, which are not in the way; or none, if that is not known.
     fn occluded_towards<G: Geometry>(
         &self,
         geometry: &G,
         (target, end): (Vec3, f32),
-        points: &[Vec3],
+        (points, _beside): (&[Vec3], &[u32]),
         occluded: &mut [bool],
     ) {
         for (point, occluded) in points.iter().zip(occluded) {

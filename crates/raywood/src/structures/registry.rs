@@ -103,7 +103,7 @@ macro_rules! structures {
                 &self,
                 geometry: &G,
                 target: (Vec3, f32),
-                points: &[Vec3],
+                points: (&[Vec3], &[u32]),
                 occluded: &mut [bool],
             ) {
                 match self {

@@ -34,6 +34,7 @@ impl DirectLight {
         self.shadows.resize_with(lights, ShadowRays::default);
         for shadows in &mut self.shadows {
             shadows.origins.clear();
+            shadows.primitives.clear();
             shadows.light.clear();
         }
     }
@@ -82,10 +83,10 @@ impl DirectLight {
             // Whole packets, unless these are the last.
             let count = shadows.origins.len();
             let count = if fewest > 1 { count - count % WAVE } else { count };
-            let origins = &shadows.origins[..count];
+            let (origins, primitives) = (&shadows.origins[..count], &shadows.primitives[..count]);
             let aim = Aim::at(light);
             blocked.resize(count, false);
-            ask_whether_blocked(frame.scene, aim, origins, parallel, blocked);
+            ask_whether_blocked(frame.scene, aim, (origins, primitives), parallel, blocked);
             counts.shadow += count as u64;
             for ((pixel, brought), blocked) in shadows.light[..count].iter().zip(&*blocked) {
                 // No branch, which would follow the edges of shadows.
@@ -103,6 +104,7 @@ impl DirectLight {
                 }
             }
             shadows.origins.drain(..count);
+            shadows.primitives.drain(..count);
             shadows.light.drain(..count);
         }
 
@@ -152,17 +154,18 @@ impl Suspects {
     }
 }
 
-/// Asks whether anything is between points and a light. `parallel` is memory.
+/// Asks whether anything is between points, beside the primitives of these numbers, and a light. `parallel` is memory.
 fn ask_whether_blocked(
     scene: &PreparedScene<'_>,
     aim: Aim,
-    origins: &[Vec3],
+    (origins, primitives): (&[Vec3], &[u32]),
     parallel: &mut Vec<Ray>,
     blocked: &mut [bool],
 ) {
     match aim {
         Aim::Point(target) => {
-            scene.structure().occluded_towards_serial(target, Ray::SHORT_END, origins, blocked);
+            let from = (origins, primitives);
+            scene.structure().occluded_from_surfaces_serial(target, Ray::SHORT_END, from, blocked);
         }
         Aim::Direction(_) => {
             parallel.clear();

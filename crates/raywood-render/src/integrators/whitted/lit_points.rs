@@ -37,6 +37,8 @@ pub(super) struct LitPoints {
 #[derive(Default)]
 pub(super) struct ShadowRays {
     pub(super) origins: Vec<Vec3>,
+    /// The primitives that they start beside.
+    pub(super) primitives: Vec<u32>,
     /// To which pixel the light adds how much if nothing is in the way.
     pub(super) light: Vec<(u32, Rgb)>,
 }
@@ -155,6 +157,7 @@ impl SendShadowRays<'_> {
         }
         let lit = lit[..lit_count].iter().map(|&number| usize::from(number));
         shadows.origins.extend(lit.clone().map(|number| get(&surfaces.origins, number)));
+        shadows.primitives.extend(lit.clone().map(|number| surfaces.primitive(number)));
         shadows.light.extend(lit.map(|number| (points.pixels[number], get(&brought, number))));
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct Surfaces {
     count: usize,
     /// The number of the ray in its wave.
     rays: [u32; WAVE],
+    /// The number of what it hit.
+    primitives: [u32; WAVE],
     /// The number of the material in its scene.
     materials: [u32; WAVE],
     /// Where along the ray, and where on the triangle.
@@ -42,6 +44,7 @@ impl Default for Surfaces {
         Self {
             count: 0,
             rays: [0; WAVE],
+            primitives: [0; WAVE],
             materials: [0; WAVE],
             distances: [0.0; WAVE],
             weights: [[0.0; WAVE]; 2],
@@ -70,6 +73,12 @@ impl Surfaces {
     #[inline(always)]
     pub(super) fn ray(&self, number: usize) -> usize {
         self.rays[number] as usize
+    }
+
+    /// The number of the primitive that was hit.
+    #[inline(always)]
+    pub(super) fn primitive(&self, number: usize) -> u32 {
+        self.primitives[number]
     }
 
     /// How far along its ray a surface is.
@@ -171,6 +180,7 @@ impl Surfaces {
                 continue;
             };
             self.rays[count] = ray as u32;
+            self.primitives[count] = hit.primitive;
             self.distances[count] = hit.t;
             self.weights[0][count] = hit.u;
             self.weights[1][count] = hit.v;

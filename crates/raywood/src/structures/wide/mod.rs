@@ -258,10 +258,10 @@ impl AccelerationStructure for WideBvh {
         &self,
         geometry: &G,
         (target, end): (Vec3, f32),
-        points: &[Vec3],
+        (points, beside): (&[Vec3], &[u32]),
         occluded: &mut [bool],
     ) {
-        self.any_of_batch(geometry, source::Towards { target, points, end }, occluded);
+        self.any_of_batch(geometry, source::Towards { target, points, beside, end }, occluded);
     }
 
     fn simd_level(&self) -> Option<SimdLevel> {

@@ -19,6 +19,12 @@ pub(super) trait Source: Copy {
     /// A ray.
     fn ray(&self, number: usize) -> Ray;
 
+    /// Whether a ray starts beside the triangle of that number, which is not in its way.
+    #[inline(always)]
+    fn starts_beside(&self, _number: usize, _primitive: u32) -> bool {
+        false
+    }
+
     /// Up to `count` rays from `start` on, as far as there are any.
     fn part(&self, start: usize, count: usize) -> Self;
 
@@ -154,6 +160,8 @@ impl Source for FromPoint<'_> {
 pub(super) struct Towards<'a> {
     pub(super) target: Vec3,
     pub(super) points: &'a [Vec3],
+    /// The primitives that they start beside; none if these are not known.
+    pub(super) beside: &'a [u32],
     pub(super) end: f32,
 }
 
@@ -176,8 +184,14 @@ impl Source for Towards<'_> {
     }
 
     #[inline(always)]
+    fn starts_beside(&self, number: usize, primitive: u32) -> bool {
+        self.beside.get(number) == Some(&primitive)
+    }
+
+    #[inline(always)]
     fn part(&self, start: usize, count: usize) -> Self {
-        Self { points: part(self.points, start, count), ..*self }
+        let points = part(self.points, start, count);
+        Self { points, beside: part(self.beside, start, count), ..*self }
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@ use super::{ALL, GROUP, Packet, Piece, TOLERANCE};
 use crate::simd::{Float, Simd, dispatch_on};
 use crate::structures::wide::node::Reference;
 use crate::structures::wide::source::Source;
+use crate::structures::wide::step;
 use crate::traverse::nearest::hit as hit_one;
 use crate::{Geometry, PreparedRay};
 
@@ -164,6 +165,12 @@ impl Packet {
         let block = piece.tree.block(leaf);
         let is_triangle = !leaf.is_mixed() || block.others() >> lane & 1 == 0;
         let mut doubtful = doubtful;
+        if K::ANY && is_triangle {
+            doubtful &= !self.starting_beside(&piece.rays, block.primitives[lane], group, doubtful);
+            if doubtful == 0 {
+                return;
+            }
+        }
         let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
         let plane = match plane {
             Some(plane) if doubtful.count_ones() >= SEVERAL => {
@@ -212,5 +219,14 @@ impl Packet {
                 self.weights[1][group][place] = hit.v * depth;
             }
         }
+    }
+
+    /// Which of some rays of a group start beside a triangle.
+    #[inline(always)]
+    fn starting_beside<R: Source>(&self, rays: &R, primitive: u32, group: usize, some: u32) -> u32 {
+        let numbers = &self.numbers[group];
+        step::lanes(some)
+            .filter(|&lane| rays.starts_beside(usize::from(numbers[lane]), primitive))
+            .fold(0, |all, lane| all | 1 << lane)
     }
 }
