@@ -3,8 +3,11 @@
 use raywood::{Hit, Ray, Vec3};
 use raywood_scene::Rgb;
 
-/// How many rays are traced together: as many as structures take in one packet.
+/// How many rays are shaded together: as many as structures take in one packet.
 pub(super) const WAVE: usize = 256;
+
+/// How many rays of a queue are traced together: several packets, so that the rays that are left over from each, and are traced one by one, are many at a time.
+pub(super) const TRACED: usize = 4 * WAVE;
 
 /// How a ray came here.
 #[derive(Clone, Copy)]
@@ -33,7 +36,8 @@ pub(super) trait Traced {
 
 /// Rays of a queue that were traced.
 pub(super) struct TracedQueue<'a> {
-    pub(super) queue: &'a Queue,
+    pub(super) rays: &'a [Ray],
+    pub(super) paths: &'a [Path],
     pub(super) hits: &'a [Option<Hit>],
 }
 
@@ -45,17 +49,17 @@ impl Traced for TracedQueue<'_> {
 
     #[inline(always)]
     fn origin(&self, ray: usize) -> Vec3 {
-        self.queue.rays[ray].origin
+        self.rays[ray].origin
     }
 
     #[inline(always)]
     fn direction(&self, ray: usize) -> Vec3 {
-        self.queue.rays[ray].direction
+        self.rays[ray].direction
     }
 
     #[inline(always)]
     fn path(&self, ray: usize) -> Path {
-        self.queue.paths[ray]
+        self.paths[ray]
     }
 
     #[inline(always)]
@@ -83,9 +87,9 @@ impl Queue {
         self.paths.clear();
     }
 
-    /// Moves the last rays, a wave of them at most, to another queue, whose own are forgotten.
+    /// Moves the last rays, as many as are traced together at most, to another queue, whose own are forgotten.
     fn move_wave(&mut self, wave: &mut Self) {
-        let start = self.rays.len().saturating_sub(WAVE);
+        let start = self.rays.len().saturating_sub(TRACED);
         wave.clear();
         wave.rays.extend(self.rays.drain(start..));
         wave.paths.extend(self.paths.drain(start..));
@@ -112,11 +116,11 @@ impl Waiting {
         &mut self.depths[depth as usize]
     }
 
-    /// Moves a full wave of rays to `wave` and tells their depth. The deepest come first, so that no queue ever holds two waves, however
-    /// often light is split.
+    /// Moves as many rays as are traced together to `wave` and tells their depth, if so many wait. The deepest come first, so that no queue ever holds
+    /// twice as many, however often light is split.
     pub(super) fn take_full(&mut self, wave: &mut Queue) -> Option<u32> {
         let number =
-            self.depths.as_flattened().iter().rposition(|queue| queue.rays.len() >= WAVE)?;
+            self.depths.as_flattened().iter().rposition(|queue| queue.rays.len() >= TRACED)?;
         Some(self.take(number, wave))
     }
 

@@ -4,7 +4,7 @@ use raywood::{Hit, HitColumns, SimdLevel};
 
 use super::direct::DirectLight;
 use super::primary::{PrimaryRays, SendPrimary, TracedPrimary};
-use super::queue::{Queue, Traced, TracedQueue, WAVE, Waiting};
+use super::queue::{Queue, TRACED, Traced, TracedQueue, WAVE, Waiting};
 use super::shade::{ShadeWave, Shader};
 use super::surfaces::Surfaces;
 use crate::integrators::Frame;
@@ -104,22 +104,28 @@ impl<'a> Waves<'a> {
         waiting.take_full(wave).or_else(|| waiting.take_first(wave))
     }
 
-    /// Traces the wave, whose rays have the same depth, shades what they hit, and has the rays that follow wait for their turn.
+    /// Traces the rays of `wave`, which have the same depth, shades what they hit, and has the rays that follow wait for their turn.
     fn trace_wave(&mut self, depth: u32) {
-        let Scratch { waiting, wave, hits, surfaces, direct, .. } = &mut *self.scratch;
+        let Scratch { wave, hits, .. } = &mut *self.scratch;
         hits.resize(wave.rays.len(), None);
         self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
 
-        let shader = Shader {
-            frame: self.frame,
-            pixels: self.pixels,
-            counts: &mut self.counts,
-            direct,
-            followers: waiting.at(depth + 1),
-            goes_on: depth < self.frame.options.max_depth,
-        };
-        shade(shader, TracedQueue { queue: wave, hits }, surfaces, self.level);
-        self.add_direct_light(FEWEST);
+        for first in (0..self.scratch.hits.len()).step_by(WAVE) {
+            let Scratch { waiting, wave, hits, surfaces, direct, .. } = &mut *self.scratch;
+            let shader = Shader {
+                frame: self.frame,
+                pixels: self.pixels,
+                counts: &mut self.counts,
+                direct,
+                followers: waiting.at(depth + 1),
+                goes_on: depth < self.frame.options.max_depth,
+            };
+            let part = first..hits.len().min(first + WAVE);
+            let rays = &wave.rays[part.clone()];
+            let traced = TracedQueue { rays, paths: &wave.paths[part.clone()], hits: &hits[part] };
+            shade(shader, traced, surfaces, self.level);
+            self.add_direct_light(FEWEST);
+        }
     }
 
     /// Adds the light of those lights that at least `fewest` shadow rays wait for.
@@ -129,7 +135,7 @@ impl<'a> Waves<'a> {
 }
 
 /// Fewer shadow rays of a light wait for others, of any part of the tile.
-const FEWEST: usize = 4 * WAVE;
+const FEWEST: usize = TRACED;
 
 /// Shades what a wave hit and sends shadow rays from there.
 fn shade(shader: Shader<'_>, wave: impl Traced, surfaces: &mut Surfaces, level: SimdLevel) {

@@ -8,9 +8,9 @@ use std::ops::ControlFlow;
 use super::WideBvh;
 use super::node::{Reference, WideNode};
 use super::single::SmallStack;
+use crate::Aabb;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Simd};
-use crate::Aabb;
 
 /// The boxes of sixteen [children](planes), by axis and side: first the smallest, then the largest coordinates. A child that is not there has an inverted infinite
 /// box.
