@@ -1,8 +1,8 @@
 //! Rays that share their origin, go to one point or run in one direction: packets of every size and shape answer as single rays do.
 
 use raywood::{
-    BuildOptions, Geometry, Hit, HitColumns, Ray, SimdLevel, Spheres, Structure, StructureKind,
-    TriangleMesh, TriangleTest, Vec3,
+    BuildOptions, Geometry, Hit, HitColumns, Joined, Ray, SimdLevel, Spheres, Structure,
+    StructureKind, TriangleMesh, TriangleTest, Vec3,
 };
 use raywood_testkit::{Rng, nasty, oracle, shapes};
 
@@ -516,6 +516,42 @@ fn shadow_rays_that_start_on_or_just_beside_surfaces_answer_as_single_rays_do() 
         for direction in [light - center, Vec3::Y, -Vec3::X] {
             let rays: Vec<_> = points.iter().map(|point| Ray::new(*point, direction)).collect();
             check(&mut structure, &rays, "from surfaces, parallel");
+        }
+    }
+}
+
+#[test]
+fn rays_that_are_known_to_start_beside_surfaces_are_blocked_as_others() {
+    let mut rng = Rng::new(47);
+    let mesh = shapes::uv_sphere(60, Vec3::ZERO, 1.0);
+    let balls = (0..60).map(|_| (1.1 * rng.direction(), rng.range(0.01, 0.2))).collect();
+    let spheres = Spheres::new(balls).expect("spheres");
+    let mut structure = build(Joined { first: &mesh, second: &spheres });
+    // A light far off, one that grazes, and one inside.
+    for light in [Vec3::new(5.0, 3.0, -4.0), Vec3::new(1.15, 0.0, -0.1), 0.3 * Vec3::ONE] {
+        for eye in [Vec3::new(1.0, 0.5, -3.0), Vec3::new(0.2, -0.1, 0.4)] {
+            let rays = pinhole(eye, Vec3::ZERO, 0.9, 3000);
+            let hits: Vec<_> = rays
+                .iter()
+                .filter_map(|ray| Some((ray, structure.intersect(ray)?)))
+                .map(|(ray, hit)| {
+                    let point = structure.surface_point(ray, &hit);
+                    (point.origin_towards(light - point.position), hit.primitive)
+                })
+                .collect();
+            let (points, primitives): (Vec<_>, Vec<_>) = hits.into_iter().unzip();
+            assert!(points.len() > 500, "{eye:?}: {}", points.len());
+            for level in SimdLevel::available() {
+                structure.set_simd_level(level);
+                let mut blocked = vec![false; points.len()];
+                let from = (&points[..], &primitives[..]);
+                let end = Ray::SHORT_END;
+                structure.occluded_from_surfaces_serial(light, end, from, &mut blocked);
+                for (&point, blocked) in points.iter().zip(blocked) {
+                    let ray = Ray::short_of(point, light);
+                    assert_eq!(blocked, structure.occluded(&ray), "{}, {ray:?}", level.name());
+                }
+            }
         }
     }
 }
