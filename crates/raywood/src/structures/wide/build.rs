@@ -164,9 +164,9 @@ impl<G: Geometry> Wide<'_, G> {
         let mut block = TriangleBlock::default();
         let mut mixed = false;
         let mut lane = 0;
-        for (place, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
+        for (number, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
             // Of a cut triangle several parts may have come together.
-            if primitives[..place].contains(&primitive) {
+            if primitives[..number].contains(&primitive) {
                 continue;
             }
             mixed |= triangle.is_none();
