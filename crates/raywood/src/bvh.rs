@@ -1,5 +1,7 @@
 //! The facade: a geometry and the tree over it, with every query.
 
+use std::ops::ControlFlow;
+
 use crate::parallel;
 use crate::structures::AccelerationStructure;
 use crate::{
@@ -47,6 +49,45 @@ impl<G: Geometry> Bvh<G> {
     /// As [`build`](Self::build).
     pub fn build_with(geometry: G, options: &BuildOptions) -> Result<Self, BuildError> {
         let tree = WideBvh::build(&geometry, options)?;
+        Ok(Self { geometry, tree })
+    }
+
+    /// As [`build_with`](Self::build_with), while `watcher` is told how much is done, from 0 to 1 in proportion to time, and may stop the build. What is built is the
+    /// same, to the bit.
+    ///
+    /// The watcher is called every few milliseconds, first with 0 and last with 1, never with less than before. Any thread of the pool may call it, but no two at a
+    /// time; the thread waits for the answer, so it should be quick. After it answered `Break` it is not called again, and the build ends within some 50
+    /// milliseconds. If it panics, so does the build.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use std::time::{Duration, Instant};
+    /// use raywood::{BuildError, BuildOptions, Bvh, TriangleMesh};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = TriangleMesh::new(corners, vec![[0, 1, 2]])?;
+    ///
+    /// let end = Instant::now() + Duration::from_secs(60);
+    /// let built = Bvh::build_watched(&mesh, &BuildOptions::default(), |done| {
+    ///     eprint!("\r{:3.0}%", 100.0 * done);
+    ///     if Instant::now() < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    /// });
+    /// assert!(built.is_ok());
+    ///
+    /// let refused = Bvh::build_watched(&mesh, &BuildOptions::default(), |_| ControlFlow::Break(()));
+    /// assert_eq!(refused.err(), Some(BuildError::Cancelled));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build), and [`BuildError::Cancelled`] if the watcher said so.
+    pub fn build_watched(
+        geometry: G,
+        options: &BuildOptions,
+        watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        let tree = WideBvh::build_watched(&geometry, options, watcher)?;
         Ok(Self { geometry, tree })
     }
 

@@ -20,6 +20,8 @@ pub enum BuildError {
         /// Its box.
         bounds: Aabb,
     },
+    /// Who watched the build asked to stop.
+    Cancelled,
 }
 
 impl BuildError {
@@ -43,6 +45,7 @@ impl fmt::Display for BuildError {
                 min.to_array(),
                 max.to_array()
             ),
+            Self::Cancelled => f.write_str("the build was cancelled"),
         }
     }
 }

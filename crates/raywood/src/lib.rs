@@ -37,6 +37,7 @@
 //! - Watertight: no ray slips between two triangles that share an edge or vertex.
 //! - No input panics, hangs or gives a hit that is not there: meshes with NaN or infinite vertices are refused, rays with NaN miss,
 //!   empty meshes are legal.
+//! - A build can be [watched](Bvh::build_watched) and stopped.
 //! - Trees and answers do not depend on the number of threads. Work runs in the caller's rayon pool (feature `rayon`, on by
 //!   default) or on the calling thread.
 

@@ -4,6 +4,7 @@
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
+use crate::build::{Cancelled, Work};
 use crate::{HitColumnsMut, Vec3};
 
 /// How many items a task handles at least: enough that handing it out costs nothing in comparison.
@@ -59,6 +60,22 @@ pub(crate) fn map<T: Send>(n: usize, f: impl Fn(usize) -> T + Send + Sync) -> Ve
     (0..n).map(f).collect()
 }
 
+/// The same of a build that may be watched.
+pub(crate) fn map_watched<T: Send>(
+    n: usize,
+    work: Work<'_>,
+    f: impl Fn(usize) -> T + Send + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let mut results = Vec::with_capacity(n);
+    work.in_stretches(n, |stretch| {
+        #[cfg(feature = "rayon")]
+        results.par_extend(stretch.into_par_iter().with_min_len(GRAIN).map(&f));
+        #[cfg(not(feature = "rayon"))]
+        results.extend(stretch.map(&f));
+    })?;
+    Ok(results)
+}
+
 /// How many threads there are. For how work is divided, never for what comes out.
 pub(crate) fn threads() -> usize {
     #[cfg(feature = "rayon")]
@@ -91,26 +108,30 @@ pub(crate) fn fold<T: Sync, A: Clone + Send + Sync>(
     fold_piece(items)
 }
 
-/// Folds the numbers from 0 to `n-1` in pieces and merges these into one; `step` and `merge` must not care about order.
+/// Folds the numbers from 0 to `n-1` in pieces and merges these into one; `step` and `merge` must not care about order. For a build that may be watched.
 pub(crate) fn fold_numbers<A: Copy + Send + Sync>(
     n: usize,
+    work: Work<'_>,
     start: A,
     step: impl Fn(&mut A, usize) + Sync,
     merge: impl Fn(&mut A, &A) + Sync,
-) -> A {
-    let fold_piece = |piece: usize| {
-        let mut accumulator = start;
-        (piece * GRAIN..n.min((piece + 1) * GRAIN)).for_each(|i| step(&mut accumulator, i));
-        accumulator
-    };
-    let pieces = 0..n.div_ceil(GRAIN);
-    #[cfg(feature = "rayon")]
-    let pieces: Vec<A> = pieces.into_par_iter().map(fold_piece).collect();
-    #[cfg(not(feature = "rayon"))]
-    let pieces = pieces.map(fold_piece);
+) -> Result<A, Cancelled> {
     let mut whole = start;
-    pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
-    whole
+    work.in_stretches(n, |stretch| {
+        let fold_piece = |piece: usize| {
+            let first = stretch.start + piece * GRAIN;
+            let mut accumulator = start;
+            (first..stretch.end.min(first + GRAIN)).for_each(|i| step(&mut accumulator, i));
+            accumulator
+        };
+        let pieces = 0..stretch.len().div_ceil(GRAIN);
+        #[cfg(feature = "rayon")]
+        let pieces: Vec<A> = pieces.into_par_iter().map(fold_piece).collect();
+        #[cfg(not(feature = "rayon"))]
+        let pieces = pieces.map(fold_piece);
+        pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
+    })?;
+    Ok(whole)
 }
 
 /// Has `f` write the outputs beside a piece of the inputs, piece by piece. Both slices have the same length.

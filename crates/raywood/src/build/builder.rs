@@ -1,5 +1,7 @@
 //! The builders of binary trees, by name.
 
+use std::ops::ControlFlow;
+
 use super::driver;
 use super::hlbvh;
 use super::lbvh;
@@ -9,6 +11,7 @@ use super::reinsertion;
 use super::sah_binned::BinnedSah;
 use super::sah_sweep::SweepSah;
 use super::spatial;
+use super::{Work, watched};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry};
 
 /// How a binary tree is built: the same kind of tree, of different quality.
@@ -43,27 +46,77 @@ impl Bvh2 {
         geometry: &G,
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        let primitives = || driver::primitives(geometry);
-        let tree = match builder {
-            Builder::Midpoint => driver::build(primitives()?, &Midpoint::new(options)),
-            Builder::Median => driver::build(primitives()?, &Median::new(options)),
-            Builder::SahSweep => driver::build(primitives()?, &SweepSah::new(options)),
-            Builder::SahBinned => driver::build(primitives()?, &BinnedSah::new(options)),
-            Builder::Lbvh => lbvh::build(geometry, options)?,
-            Builder::Hlbvh => hlbvh::build(geometry, options)?,
-        };
-        Ok(reinsertion::optimize(tree, options))
+        Self::build_in(builder, geometry, options, Work::UNWATCHED)
     }
 
-    /// As [`build_by`](Self::build_by) with the builder from which the wide tree is made and, if the options ask for it, with triangles cut: some primitives may
+    /// As [`build_by`](Self::build_by), watched: see [`Bvh::build_watched`](crate::Bvh::build_watched).
+    ///
+    /// # Errors
+    ///
+    /// As [`build_by`](Self::build_by), and [`BuildError::Cancelled`].
+    pub fn build_watched<G: Geometry>(
+        builder: Builder,
+        geometry: &G,
+        options: &BuildOptions,
+        watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        watched(watcher, |work| Self::build_in(builder, geometry, options, work))
+    }
+
+    /// Builds the tree as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        builder: Builder,
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        let [building, improving] = work.shares([builder.cost(), reinsertion::cost(options)]);
+        let tree = match builder {
+            Builder::Midpoint => driver::build(geometry, &Midpoint::new(options), building)?,
+            Builder::Median => driver::build(geometry, &Median::new(options), building)?,
+            Builder::SahSweep => driver::build(geometry, &SweepSah::new(options), building)?,
+            Builder::SahBinned => driver::build(geometry, &BinnedSah::new(options), building)?,
+            Builder::Lbvh => lbvh::build(geometry, options, building)?,
+            Builder::Hlbvh => hlbvh::build(geometry, options, building)?,
+        };
+        Ok(reinsertion::optimize(tree, options, improving)?)
+    }
+
+    /// As [`build_in`](Self::build_in) with the builder from which the wide tree is made and, if the options ask for it, with triangles cut: some primitives may
     /// then lie in several leaves, whose boxes are around parts of them.
     pub(crate) fn build_for_wide<G: Geometry>(
         geometry: &G,
         options: &BuildOptions,
+        work: Work<'_>,
     ) -> Result<Self, BuildError> {
-        if options.wide_builder == Builder::SahBinned && options.clamped().spatial_splits > 0.0 {
-            return Ok(reinsertion::optimize(spatial::build(geometry, options)?, options));
+        if !spatial::is_asked_for(options) {
+            return Self::build_in(options.wide_builder, geometry, options, work);
         }
-        Self::build_by(options.wide_builder, geometry, options)
+        let [building, improving] = work.shares([spatial::COST, reinsertion::cost(options)]);
+        let tree = spatial::build(geometry, options, building)?;
+        Ok(reinsertion::optimize(tree, options, improving)?)
+    }
+
+    /// About how long [`build_for_wide`](Self::build_for_wide) takes, in units in which reinsertion links the nodes of the tree in one.
+    pub(crate) fn cost_for_wide(options: &BuildOptions) -> f64 {
+        let building = match spatial::is_asked_for(options) {
+            true => spatial::COST,
+            false => options.wide_builder.cost(),
+        };
+        building + reinsertion::cost(options)
+    }
+}
+
+impl Builder {
+    /// About how long it takes, in the units of [`Bvh2::cost_for_wide`].
+    fn cost(self) -> f64 {
+        match self {
+            Self::Midpoint => 40.0,
+            Self::Median => 80.0,
+            Self::SahSweep => 1500.0,
+            Self::SahBinned => 160.0,
+            Self::Lbvh => 36.0,
+            Self::Hlbvh => 105.0,
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! The recursion that every top-down builder shares: in place like quicksort, over an array of boxes with numbers.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{PackedAabb, Primitive};
+use super::quicksort::select;
+use super::{Cancelled, PackedAabb, Primitive, Work};
 use crate::structures::{Bvh2, MAX_DEPTH, Node};
 use crate::{Aabb, BuildError, Geometry, parallel};
 
@@ -20,7 +22,8 @@ pub(crate) trait Splitter: Sync {
     /// Permutes the set so that the left child's primitives come first and tells how many these are and what is around both children, or says by
     /// `None` that the set should be a leaf.
     ///
-    /// The answer must depend on the arguments alone, never on timing or threads.
+    /// The answer must depend on the arguments alone, never on timing or threads. Splits of large sets ask [`Set::work`] now and then whether to go on; if not, any
+    /// answer will do.
     fn split(&self, set: &mut Set<'_>) -> Option<Split>;
 }
 
@@ -31,6 +34,8 @@ pub(crate) struct Set<'a> {
     pub(super) spare: &'a mut [Primitive],
     /// What is around them.
     pub(super) around: Around,
+    /// To be asked while a large set is divided.
+    pub(super) work: Work<'a>,
 }
 
 /// What is around some primitives.
@@ -85,17 +90,15 @@ impl Split {
 }
 
 /// The bounds of every primitive, checked.
-pub(crate) fn primitive_bounds<G: Geometry>(geometry: &G) -> Result<Vec<PackedAabb>, BuildError> {
-    map_bounds(geometry, |_, bounds| bounds)
-}
-
-/// Every primitive, its bounds checked.
-pub(super) fn primitives<G: Geometry>(geometry: &G) -> Result<Vec<Primitive>, BuildError> {
-    map_bounds(geometry, Primitive::new)
+pub(crate) fn primitive_bounds<G: Geometry>(
+    geometry: &G,
+    work: Work<'_>,
+) -> Result<Vec<PackedAabb>, BuildError> {
+    map_bounds(geometry, work, |_, bounds| bounds)
 }
 
 /// What is around all primitives, whose bounds are checked. Keeps nothing of each: for those who would rather ask the geometry again.
-pub(super) fn around_all<G: Geometry>(geometry: &G) -> Result<Around, BuildError> {
+pub(super) fn around_all<G: Geometry>(geometry: &G, work: Work<'_>) -> Result<Around, BuildError> {
     let primitives = geometry.len();
     if primitives > BuildError::MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { primitives });
@@ -103,6 +106,7 @@ pub(super) fn around_all<G: Geometry>(geometry: &G) -> Result<Around, BuildError
     let start = (Around::NOTHING, usize::MAX);
     let (around, first_bad) = parallel::fold_numbers(
         primitives,
+        work,
         start,
         |(around, first_bad), number| {
             let bounds = geometry.bounds(number as u32);
@@ -115,7 +119,7 @@ pub(super) fn around_all<G: Geometry>(geometry: &G) -> Result<Around, BuildError
             around.grow(&piece.0);
             *first_bad = piece.1.min(*first_bad);
         },
-    );
+    )?;
     match first_bad {
         usize::MAX => Ok(around),
         number => {
@@ -125,9 +129,18 @@ pub(super) fn around_all<G: Geometry>(geometry: &G) -> Result<Around, BuildError
     }
 }
 
+/// Every primitive, its bounds checked.
+pub(super) fn primitives<G: Geometry>(
+    geometry: &G,
+    work: Work<'_>,
+) -> Result<Vec<Primitive>, BuildError> {
+    map_bounds(geometry, work, Primitive::new)
+}
+
 /// `f` of every primitive's number and bounds, which are checked.
 fn map_bounds<G: Geometry, T: Send>(
     geometry: &G,
+    work: Work<'_>,
     f: impl Fn(u32, PackedAabb) -> T + Send + Sync,
 ) -> Result<Vec<T>, BuildError> {
     let primitives = geometry.len();
@@ -135,13 +148,13 @@ fn map_bounds<G: Geometry, T: Send>(
         return Err(BuildError::TooManyPrimitives { primitives });
     }
     let first_bad = AtomicUsize::new(usize::MAX);
-    let mapped = parallel::map(primitives, |primitive| {
+    let mapped = parallel::map_watched(primitives, work, |primitive| {
         let bounds = geometry.bounds(primitive as u32);
         if bounds.is_empty() || !bounds.is_finite() {
             first_bad.fetch_min(primitive, Ordering::Relaxed);
         }
         f(primitive as u32, bounds.into())
-    });
+    })?;
     match first_bad.into_inner() {
         usize::MAX => Ok(mapped),
         primitive => {
@@ -151,21 +164,37 @@ fn map_bounds<G: Geometry, T: Send>(
     }
 }
 
+/// Builds the tree over a geometry. The same for any number of threads.
+pub(super) fn build<G: Geometry, S: Splitter>(
+    geometry: &G,
+    splitter: &S,
+    work: Work<'_>,
+) -> Result<Bvh2, BuildError> {
+    let [listing, building] = work.shares([1.0, 20.0]);
+    let primitives = primitives(geometry, listing)?;
+    Ok(build_over(primitives, splitter, building)?)
+}
+
 /// Builds the tree over (checked) primitives, numbered from 0. The same for any number of threads.
-pub(super) fn build<S: Splitter>(mut primitives: Vec<Primitive>, splitter: &S) -> Bvh2 {
+pub(super) fn build_over<S: Splitter>(
+    mut primitives: Vec<Primitive>,
+    splitter: &S,
+    work: Work<'_>,
+) -> Result<Bvh2, Cancelled> {
     let n = primitives.len();
     let Some(&some) = primitives.first() else {
-        return Bvh2::from_parts(Vec::new(), Vec::new());
+        return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     };
+    let [making_room, growing, copying] = work.shares([1.0, 50.0, 2.0]);
     let spare = if S::USES_SPARE && n > LARGE_SET { n } else { 0 };
-    let mut spare = parallel::map(spare, |_| some);
+    let mut spare = parallel::map_watched(spare, making_room, |_| some)?;
     let mut indices = vec![0; n];
     let around = Around::of(&primitives);
-    let set = Set { primitives: &mut primitives, spare: &mut spare, around };
-    let tree = grow(splitter, Place { set, indices: &mut indices, first: 0, depth: 1 });
+    let set = Set { primitives: &mut primitives, spare: &mut spare, around, work: growing };
+    let tree = grow(splitter, Place { set, indices: &mut indices, first: 0, depth: 1 })?;
     drop((primitives, spare));
 
-    Bvh2::from_parts(tree.into_nodes(), indices)
+    Ok(Bvh2::from_parts(tree.into_nodes(copying)?, indices))
 }
 
 /// What a subtree is built from.
@@ -188,9 +217,10 @@ pub(super) enum Subtree {
 }
 
 /// Builds a subtree, in parallel if it is large.
-fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
+fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Result<Subtree, Cancelled> {
     let Place { mut set, indices, first, depth } = place;
-    let count = set.primitives.len();
+    let (count, work) = (set.primitives.len(), set.work);
+    work.check()?;
     if count <= PARALLEL_SUBTREES {
         let mut nodes = Vec::with_capacity(count);
         nodes.push(Node::leaf(set.around.bounds.into(), first as u32, count as u32));
@@ -202,13 +232,20 @@ fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
             &mut nodes,
         );
         write_numbers(set.primitives, indices);
-        return Subtree::Piece(nodes);
+        work.done()?;
+        return Ok(Subtree::Piece(nodes));
     }
+    // Every level below takes about as long as this one.
+    let levels = (count as f64).log2();
+    let [dividing, growing] = work.shares([1.0, levels]);
     let bounds = set.around.bounds;
-    let Some(Split { left_count, left, right, in_spare }) = split(splitter, &mut set, depth) else {
+    let split = split(splitter, &mut set, depth);
+    dividing.done()?;
+    let Some(Split { left_count, left, right, in_spare }) = split else {
         write_numbers(set.primitives, indices);
         let leaf = Node::leaf(bounds.into(), first as u32, count as u32);
-        return Subtree::Piece(vec![leaf]);
+        growing.done()?;
+        return Ok(Subtree::Piece(vec![leaf]));
     };
 
     let Set { primitives, spare, .. } = set;
@@ -216,22 +253,34 @@ fn grow<S: Splitter>(splitter: &S, place: Place<'_>) -> Subtree {
     let (left_primitives, right_primitives) = primitives.split_at_mut(left_count);
     let (left_spare, right_spare) = spare.split_at_mut(left_count.min(spare.len()));
     let (left_indices, right_indices) = indices.split_at_mut(left_count);
+    let [left_work, right_work] =
+        growing.shares([left_primitives.len() as f64, right_primitives.len() as f64]);
     let depth = depth + 1;
     let below_left = Place {
-        set: Set { primitives: left_primitives, spare: room(left_spare), around: left },
+        set: Set {
+            primitives: left_primitives,
+            spare: room(left_spare),
+            around: left,
+            work: left_work,
+        },
         indices: left_indices,
         first,
         depth,
     };
     let below_right = Place {
-        set: Set { primitives: right_primitives, spare: room(right_spare), around: right },
+        set: Set {
+            primitives: right_primitives,
+            spare: room(right_spare),
+            around: right,
+            work: right_work,
+        },
         indices: right_indices,
         first: first + left_count,
         depth,
     };
-    let children =
+    let (left, right) =
         parallel::join_if(true, || grow(splitter, below_left), || grow(splitter, below_right));
-    Subtree::Pair(bounds, Box::new(children.into()))
+    Ok(Subtree::Pair(bounds, Box::new([left?, right?])))
 }
 
 /// Divides a set as the splitter wants to, but in the middle where the tree might else become too deep.
@@ -280,7 +329,7 @@ fn subdivide<S: Splitter>(
     if primitives.len() == 1 {
         return;
     }
-    let mut set = Set { primitives, spare: &mut [], around: *around };
+    let mut set = Set { primitives, spare: &mut [], around: *around, work: Work::UNWATCHED };
     let Some(Split { left_count, left, right, .. }) = split(splitter, &mut set, depth) else {
         return;
     };
@@ -311,14 +360,16 @@ impl Subtree {
     }
 
     /// All nodes depth first, pair by pair, the root first.
-    pub(super) fn into_nodes(self) -> Vec<Node> {
+    pub(super) fn into_nodes(self, work: Work<'_>) -> Result<Vec<Node>, Cancelled> {
         if let Self::Piece(nodes) = self {
-            return nodes;
+            work.done()?;
+            return Ok(nodes);
         }
-        let mut nodes = vec![Node::leaf(Aabb::EMPTY, 0, 1); self.len()];
+        let [making_room, copying] = work.shares([1.0, 1.0]);
+        let mut nodes = making_room.copies(Node::leaf(Aabb::EMPTY, 0, 1), self.len())?;
         let (root, descendants) = nodes.split_at_mut(1);
-        self.copy_to(&mut root[0], descendants, 1);
-        nodes
+        self.copy_to(&mut root[0], descendants, 1, copying)?;
+        Ok(nodes)
     }
 
     /// How many nodes it has.
@@ -330,7 +381,14 @@ impl Subtree {
     }
 
     /// Copies the root to its place, and all other nodes to theirs, the first of which has the given number.
-    fn copy_to(&self, root: &mut Node, descendants: &mut [Node], first: usize) {
+    fn copy_to(
+        &self,
+        root: &mut Node,
+        descendants: &mut [Node],
+        first: usize,
+        work: Work<'_>,
+    ) -> Result<(), Cancelled> {
+        work.check()?;
         match self {
             Self::Piece(nodes) => {
                 let moved = |node: &Node| match node.is_leaf() {
@@ -341,6 +399,7 @@ impl Subtree {
                 for (node, copy) in nodes[1..].iter().zip(descendants) {
                     *copy = moved(node);
                 }
+                work.done()
             }
             Self::Pair(bounds, children) => {
                 *root = Node::interior((*bounds).into(), first as u32);
@@ -348,11 +407,14 @@ impl Subtree {
                 let (left_root, right_root) = pair.split_at_mut(1);
                 let below_left = children[0].len() - 1;
                 let (left, right) = below.split_at_mut(below_left);
-                parallel::join_if(
+                let [left_work, right_work] = work.shares([left.len() as f64, right.len() as f64]);
+                let behind_left = first + 2 + below_left;
+                let (left, right) = parallel::join_if(
                     true,
-                    || children[0].copy_to(&mut left_root[0], left, first + 2),
-                    || children[1].copy_to(&mut right_root[0], right, first + 2 + below_left),
+                    || children[0].copy_to(&mut left_root[0], left, first + 2, left_work),
+                    || children[1].copy_to(&mut right_root[0], right, behind_left, right_work),
                 );
+                left.and(right)
             }
         }
     }
@@ -362,25 +424,47 @@ impl Subtree {
 pub(super) fn split_at_median(set: &mut Set<'_>) -> Split {
     let axis = Aabb::from(set.around.centers).extent().max_axis();
     let left_count = set.primitives.len() / 2;
-    set.primitives.select_nth_unstable_by(left_count, |a, b| {
+    let selected = select(set.primitives, left_count, set.work, |a, b| {
         let by_center = a.center()[axis].total_cmp(&b.center()[axis]);
         by_center.then_with(|| a.number().cmp(&b.number()))
     });
-    Split::at(set.primitives, left_count)
+    match selected {
+        Ok(()) => Split::at(set.primitives, left_count),
+        Err(Cancelled) => {
+            let nothing = Around::NOTHING;
+            Split { left_count, left: nothing, right: nothing, in_spare: false }
+        }
+    }
 }
 
-/// Divides a set by a property of each primitive's box; `None` if all or none have it.
+/// Divides a set by a property of each primitive; `None` if all or none have it.
 pub(super) fn partition_by(
-    primitives: &mut [Primitive],
-    goes_left: impl Fn(&PackedAabb) -> bool,
+    set: &mut Set<'_>,
+    goes_left: impl Fn(&Primitive) -> bool,
 ) -> Option<Split> {
-    // Every primitive is swapped to the end of those that go left, which counts it among them or not: no branch to be foreseen.
+    let (work, count) = (set.work.without_progress(), set.primitives.len());
     let mut left_count = 0;
-    for place in 0..primitives.len() {
-        let goes_left = goes_left(primitives[place].bounds());
-        primitives.swap(place, left_count);
+    work.in_stretches(count, |stretch| {
+        left_count = partition_stretch(set.primitives, left_count, stretch, &goes_left);
+    })
+    .ok()?;
+    let divides = 0 < left_count && left_count < count;
+    divides.then(|| Split::at(set.primitives, left_count))
+}
+
+/// Moves what goes left among a stretch of items to the end of the `left_count` that were found before, and tells how many these are then.
+#[inline]
+pub(super) fn partition_stretch<T>(
+    items: &mut [T],
+    mut left_count: usize,
+    stretch: Range<usize>,
+    goes_left: impl Fn(&T) -> bool,
+) -> usize {
+    // Every item is swapped to the end of those that go left, which counts it among them or not: no branch to be foreseen.
+    for place in stretch {
+        let goes_left = goes_left(&items[place]);
+        items.swap(place, left_count);
         left_count += usize::from(goes_left);
     }
-    let divides = 0 < left_count && left_count < primitives.len();
-    divides.then(|| Split::at(primitives, left_count))
+    left_count
 }

@@ -1,37 +1,43 @@
 //! The linear BVH: primitives sorted along a space-filling curve, sets split where the curve turns. Lauterbach et al., "Fast BVH Construction on GPUs", Eurographics 2009;
 //! Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012. Where codes cannot tell primitives apart, they get codes of their own.
 
-use super::PackedAabb;
 use super::driver::{self, PARALLEL_SUBTREES, Subtree, must_halve};
 use super::morton::{Morton, NUMBER_BITS, number, same_code};
 use super::radix_sort::sort_above;
+use super::{Cancelled, PackedAabb, Work};
 use crate::structures::{Bvh2, Node};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, parallel};
 
 /// Builds the tree. The same for any number of threads. O(N) but where many primitives lie close together, or in one place.
-pub(super) fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Bvh2, BuildError> {
-    build_with_leaves(geometry, options.clamped().max_leaf_size)
+pub(super) fn build<G: Geometry>(
+    geometry: &G,
+    options: &BuildOptions,
+    work: Work<'_>,
+) -> Result<Bvh2, BuildError> {
+    build_with_leaves(geometry, options.clamped().max_leaf_size, work)
 }
 
 /// The same, with leaves of at most so many primitives.
 pub(super) fn build_with_leaves<G: Geometry>(
     geometry: &G,
     max_leaf_size: usize,
+    work: Work<'_>,
 ) -> Result<Bvh2, BuildError> {
-    let around = driver::around_all(geometry)?;
+    let [bounding, encoding, sorting, growing, copying] = work.shares([1.0, 2.0, 1.5, 5.0, 1.0]);
+    let around = driver::around_all(geometry, bounding)?;
     let n = geometry.len();
     if n == 0 {
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     }
     let morton = Morton::new(&around.centers);
     let key = |primitive: usize| key(geometry, &morton, primitive as u32);
-    let mut keys = parallel::map(n, key);
-    sort_above(NUMBER_BITS, &mut keys);
+    let mut keys = parallel::map_watched(n, encoding, key)?;
+    sort_above(NUMBER_BITS, &mut keys, sorting)?;
 
     let builder = Lbvh { geometry, max_leaf_size };
-    let set = Set { keys: &mut keys, first: 0, depth: 1, alike: false };
-    let nodes = builder.grow(set).into_nodes();
-    let indices = parallel::map(n, |place| number(keys[place]));
+    let set = Set { keys: &mut keys, first: 0, depth: 1, alike: false, work: growing };
+    let nodes = builder.grow(set)?.into_nodes(copying)?;
+    let indices = parallel::map_watched(n, work.without_progress(), |place| number(keys[place]))?;
     Ok(Bvh2::from_parts(nodes, indices))
 }
 
@@ -60,25 +66,31 @@ struct Set<'a> {
     depth: usize,
     /// Whether no code can tell them apart: their centres are in one place.
     alike: bool,
+    /// What building their subtree is of the whole build.
+    work: Work<'a>,
 }
 
 impl<G: Geometry> Lbvh<'_, G> {
     /// Builds a subtree, in parallel if it is large.
-    fn grow(&self, mut set: Set<'_>) -> Subtree {
-        let count = set.keys.len();
+    fn grow(&self, mut set: Set<'_>) -> Result<Subtree, Cancelled> {
+        let (count, work) = (set.keys.len(), set.work);
+        work.check()?;
         if count <= PARALLEL_SUBTREES || count <= self.max_leaf_size {
             let (first, keys) = (set.first, &mut *set.keys);
             let mut nodes = Vec::with_capacity(count);
             nodes.push(UNKNOWN);
-            let below = Set { keys: &mut *keys, ..set };
+            let below = Set { keys: &mut *keys, work: Work::UNWATCHED, ..set };
             self.subdivide(below, 0, &mut nodes);
             self.measure(&mut nodes, keys, first);
-            return Subtree::Piece(nodes);
+            work.done()?;
+            return Ok(Subtree::Piece(nodes));
         }
         let (left, right) = set.split(self);
-        let children = parallel::join_if(true, || self.grow(left), || self.grow(right));
-        let bounds = children.0.bounds().union(children.1.bounds());
-        Subtree::Pair(bounds, Box::new(children.into()))
+        work.check()?;
+        let (left, right) = parallel::join_if(true, || self.grow(left), || self.grow(right));
+        let children = [left?, right?];
+        let bounds = children[0].bounds().union(children[1].bounds());
+        Ok(Subtree::Pair(bounds, Box::new(children)))
     }
 
     /// Puts a subtree, still without boxes, into the place of a node and behind the last one, pair by pair.
@@ -117,18 +129,20 @@ impl<G: Geometry> Lbvh<'_, G> {
     }
 
     /// Gives primitives whose codes are the same new ones, which tell them apart, and sorts them. Says whether that can be done.
-    fn encode_anew(&self, keys: &mut [u64]) -> bool {
-        let around = |centers: &mut PackedAabb, key: &u64| {
-            let bounds = PackedAabb::from(self.geometry.bounds(number(*key)));
+    fn encode_anew(&self, keys: &mut [u64], work: Work<'_>) -> Result<bool, Cancelled> {
+        let around = |centers: &mut PackedAabb, place: usize| {
+            let bounds = PackedAabb::from(self.geometry.bounds(number(keys[place])));
             *centers = centers.including(bounds.center());
         };
-        let centers = parallel::fold(keys, PackedAabb::EMPTY, around, PackedAabb::grow);
+        let (count, work) = (keys.len(), work.without_progress());
+        let nothing = PackedAabb::EMPTY;
+        let centers = parallel::fold_numbers(count, work, nothing, around, PackedAabb::grow)?;
         let morton = Morton::new(&centers);
-        let mut sorted =
-            parallel::map(keys.len(), |place| key(self.geometry, &morton, number(keys[place])));
-        sort_above(NUMBER_BITS, &mut sorted);
+        let key = |place: usize| key(self.geometry, &morton, number(keys[place]));
+        let mut sorted = parallel::map_watched(count, work, key)?;
+        sort_above(NUMBER_BITS, &mut sorted, work)?;
         keys.copy_from_slice(&sorted);
-        !same_code(keys[0], keys[keys.len() - 1])
+        Ok(!same_code(keys[0], keys[count - 1]))
     }
 }
 
@@ -140,7 +154,8 @@ impl<'a> Set<'a> {
         let count = keys.len();
         let halve = self.alike || must_halve(count, self.depth);
         if !halve && same_code(keys[0], keys[count - 1]) {
-            self.alike = !builder.encode_anew(keys);
+            // Of a build that is stopped it does not matter.
+            self.alike = !builder.encode_anew(keys, self.work).unwrap_or(false);
         }
         let left_count = match halve || self.alike {
             true => count / 2,
@@ -152,9 +167,11 @@ impl<'a> Set<'a> {
         };
         let (left, right) = keys.split_at_mut(left_count);
         let (depth, alike) = (self.depth + 1, self.alike);
+        let [left_work, right_work] = self.work.shares([left.len() as f64, right.len() as f64]);
+        let behind = self.first + left_count;
         (
-            Set { keys: left, first: self.first, depth, alike },
-            Set { keys: right, first: self.first + left_count, depth, alike },
+            Set { keys: left, first: self.first, depth, alike, work: left_work },
+            Set { keys: right, first: behind, depth, alike, work: right_work },
         )
     }
 }

@@ -22,7 +22,7 @@ impl Splitter for Midpoint {
         let node = Aabb::from(set.around.bounds);
         let axis = (0.5 * node.max - 0.5 * node.min).max_axis();
         let middle = node.center()[axis];
-        let split = partition_by(set.primitives, |primitive| primitive.center()[axis] < middle);
+        let split = partition_by(set, |primitive| primitive.center()[axis] < middle);
         // Everything on one side: as good as no split.
         Some(split.unwrap_or_else(|| split_at_median(set)))
     }

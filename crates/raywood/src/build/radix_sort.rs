@@ -1,5 +1,6 @@
 //! Sorting numbers by their highest bits: a radix sort from the lowest digit to the highest, stable and the same for any number of threads.
 
+use super::{Cancelled, Work};
 use crate::parallel;
 
 /// How many bits a digit has.
@@ -11,36 +12,58 @@ const DIGITS: usize = 1 << DIGIT_BITS;
 /// Fewer numbers are sorted by comparing them: clearing the counts would take longer.
 const FEW: usize = 2048;
 
+/// A thread asks whether to go on after so many numbers.
+const STRETCH: usize = 1 << 16;
+
 /// Pieces that threads count and move at a time hold at least as many numbers.
 const PIECE: usize = 1 << 16;
 
 /// Sorts `numbers`, which are in the order of their lowest `bits` bits already: only the bits above count. O(n), in parallel.
-pub(super) fn sort_above(bits: u32, numbers: &mut Vec<u64>) {
+pub(super) fn sort_above(
+    bits: u32,
+    numbers: &mut Vec<u64>,
+    work: Work<'_>,
+) -> Result<(), Cancelled> {
     if numbers.len() <= FEW {
         numbers.sort_unstable();
-        return;
+        return work.done();
     }
     let mut moved = vec![0; numbers.len()];
-    for shift in (bits..u64::BITS).step_by(DIGIT_BITS as usize) {
-        if move_by_digit(shift, numbers, &mut moved) {
+    let shifts = (bits..u64::BITS).step_by(DIGIT_BITS as usize);
+    let pass = work.part(1, shifts.len());
+    for shift in shifts {
+        if move_by_digit(shift, numbers, &mut moved, work)? {
             std::mem::swap(numbers, &mut moved);
         }
+        pass.done()?;
     }
+    Ok(())
 }
 
 /// Copies all numbers to another place, ordered by one digit and else as before. Copies none, and says so, if all have the same digit.
-fn move_by_digit(shift: u32, from: &[u64], to: &mut [u64]) -> bool {
+fn move_by_digit(
+    shift: u32,
+    from: &[u64],
+    to: &mut [u64],
+    work: Work<'_>,
+) -> Result<bool, Cancelled> {
     let digit = |number: u64| (number >> shift) as usize % DIGITS;
     let pieces = from.len().div_ceil(PIECE).min(parallel::threads());
     let piece = from.len().div_ceil(pieces);
     let counts = parallel::map_pieces(from, piece, |numbers| {
         let mut counts = vec![0u32; DIGITS];
-        numbers.iter().for_each(|&number| counts[digit(number)] += 1);
+        for stretch in numbers.chunks(STRETCH) {
+            if work.ask().is_err() {
+                break;
+            }
+            stretch.iter().for_each(|&number| counts[digit(number)] += 1);
+        }
         counts
     });
+    work.check()?;
     let first = digit(from[0]);
     if counts.iter().map(|counts| counts[first] as usize).sum::<usize>() == from.len() {
-        return false;
+        return Ok(false);
     }
 
     // Every piece has a place of its own for each value of the digit, behind those of the pieces before it.
@@ -55,13 +78,18 @@ fn move_by_digit(shift: u32, from: &[u64], to: &mut [u64]) -> bool {
     }
     let tasks = from.chunks(piece).zip(places).collect();
     parallel::map_tasks(tasks, |(numbers, mut places)| {
-        for &number in numbers {
-            if let Some(place) = places[digit(number)].next() {
-                *place = number;
+        for stretch in numbers.chunks(STRETCH) {
+            if work.ask().is_err() {
+                return;
+            }
+            for &number in stretch {
+                if let Some(place) = places[digit(number)].next() {
+                    *place = number;
+                }
             }
         }
     });
-    true
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -90,7 +118,7 @@ mod tests {
                 .collect();
             let mut expected = numbers.clone();
             expected.sort();
-            sort_above(31, &mut numbers);
+            sort_above(31, &mut numbers, Work::UNWATCHED).expect("nobody stops it");
             assert!(numbers == expected, "{count} numbers, mask {mask:x}");
         }
     }

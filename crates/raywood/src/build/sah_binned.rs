@@ -2,7 +2,7 @@
 
 use super::driver::{Around, LARGE_SET, Set, Split, Splitter, split_at_median};
 use super::sah_small::{self, SMALL_SET};
-use super::{PackedAabb, Primitive};
+use super::{PackedAabb, Primitive, Work};
 use crate::{BuildOptions, parallel};
 
 /// The most bins per axis.
@@ -31,14 +31,16 @@ impl BinnedSah {
 
     /// Divides a set at the best place between `bins` bins, at most `BINS`, a power of two.
     fn split_between<const BINS: usize>(&self, set: &mut Set<'_>, bins: usize) -> Option<Split> {
-        let count = set.primitives.len();
+        let (count, work) = (set.primitives.len(), set.work);
         let binning = Binning::new(&set.around.centers, bins);
         let pieces = match set.spare {
             [] => vec![],
-            _ => parallel::map_pieces(set.primitives, PIECE, |piece| {
-                Bins::<BINS>::of(&binning, piece)
+            _ => parallel::map_pieces(set.primitives, PIECE, |piece| match work.ask() {
+                Ok(()) => Bins::<BINS>::of(&binning, piece),
+                Err(_) => Bins::NOTHING,
             }),
         };
+        work.check().ok()?;
         let bins = match pieces.split_first() {
             None => Bins::of(&binning, set.primitives),
             Some((first, rest)) => rest.iter().fold(first.clone(), Bins::merged),
@@ -61,7 +63,7 @@ impl BinnedSah {
             [] => side.partition(set.primitives),
             _ => {
                 let counts = pieces.iter().map(|bins| bins.count_before(&place));
-                side.copy(set.primitives, set.spare, counts)
+                side.copy(set.primitives, set.spare, counts, work)
             }
         };
         debug_assert_eq!(left_count, bins.count_before(&place));
@@ -146,8 +148,10 @@ struct Place {
 }
 
 impl<const BINS: usize> Bins<BINS> {
+    const NOTHING: Self = Self { bounds: [[PackedAabb::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
+
     fn of(binning: &Binning, primitives: &[Primitive]) -> Self {
-        let mut all = Self { bounds: [[PackedAabb::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
+        let mut all = Self::NOTHING;
         for primitive in primitives {
             let center = primitive.center();
             // Not `map`, which the compiler does not always inline.
@@ -250,6 +254,7 @@ impl Side<'_> {
         primitives: &[Primitive],
         copies: &mut [Primitive],
         left_counts: impl Iterator<Item = usize> + Clone,
+        work: Work<'_>,
     ) -> (usize, [PackedAabb; 2]) {
         let left_count = left_counts.clone().sum();
         let (mut lefts, mut rights) = copies.split_at_mut(left_count);
@@ -262,6 +267,9 @@ impl Side<'_> {
         }
         let centers = parallel::map_tasks(tasks, |(piece, left, right)| {
             let mut centers = [PackedAabb::EMPTY; 2];
+            if work.ask().is_err() {
+                return centers;
+            }
             let mut sides = [right.iter_mut(), left.iter_mut()];
             for primitive in piece {
                 let goes_left = self.take(primitive, &mut centers);

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::TransformError;
-use crate::Aabb;
+use crate::{Aabb, BuildError};
 
 /// Why a scene of instances cannot be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,8 @@ pub enum InstanceError {
         /// How many there are.
         instances: usize,
     },
+    /// The tree over the instances cannot be built for another reason.
+    Build(BuildError),
 }
 
 impl fmt::Display for InstanceError {
@@ -49,6 +51,7 @@ impl fmt::Display for InstanceError {
                     Self::MAX_INSTANCES
                 )
             }
+            Self::Build(error) => write!(f, "the tree over the instances: {error}"),
         }
     }
 }
@@ -62,6 +65,7 @@ impl std::error::Error for InstanceError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::BadTransform { error, .. } => Some(error),
+            Self::Build(error) => Some(error),
             _ => None,
         }
     }

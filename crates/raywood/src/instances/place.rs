@@ -134,6 +134,7 @@ fn top_tree(boxes: Vec<(u32, Aabb)>, options: &BuildOptions) -> Result<TopTree, 
                 instance: boxes.0[primitive as usize].0 as usize,
                 bounds,
             },
+            error => InstanceError::Build(error),
         })?;
     Ok(TopTree::of(&tree, |entry| boxes.0[entry as usize].0))
 }

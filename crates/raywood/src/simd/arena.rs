@@ -2,6 +2,7 @@
 //! from a number alone, whatever kind of thing it is.
 
 use std::mem::MaybeUninit;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Plain numbers that fill whole cache lines.
 ///
@@ -31,16 +32,21 @@ impl Arena {
         self.0.len()
     }
 
-    /// So many lines, which `fill` fills, and what that returns. Lines that it leaves alone are zeros. Memory is touched for the first time where it is filled,
+    /// So many lines, which `fill` fills, and what that returns; `None` if it [abandons](Part::abandon) any of them. Lines that it leaves alone are zeros. Memory is touched for the first time where it is filled,
     /// by the thread that does so: a page fault costs more than filling a page.
-    pub(crate) fn filled<R>(lines: usize, fill: impl FnOnce(Part<'_>) -> R) -> (Self, R) {
+    pub(crate) fn filled<R>(lines: usize, fill: impl FnOnce(Part<'_>) -> R) -> Option<(Self, R)> {
         let mut all = Vec::with_capacity(lines);
         huge_pages::ask_for(all.spare_capacity_mut());
-        let result = fill(Part { lines: &mut all.spare_capacity_mut()[..lines], first: 0 });
-        // SAFETY: there is room for as many lines. Every line belonged to a part, and parts write all their lines, when asked to or when they are dropped; whoever
-        // fills arenas forgets none.
+        let is_abandoned = AtomicBool::new(false);
+        let room = &mut all.spare_capacity_mut()[..lines];
+        let result = fill(Part { lines: room, first: 0, is_abandoned: &is_abandoned });
+        if is_abandoned.into_inner() {
+            return None;
+        }
+        // SAFETY: there is room for as many lines. Every line belonged to a part, and parts write all their lines, when asked to or when they are dropped, as none is
+        // abandoned; whoever fills arenas forgets none.
         unsafe { all.set_len(lines) };
-        (Self(all), result)
+        Some((Self(all), result))
     }
 
     /// The thing whose first line has this number.
@@ -82,6 +88,8 @@ pub(crate) struct Part<'a> {
     lines: &'a mut [MaybeUninit<Line>],
     /// The number of the first of them.
     first: usize,
+    /// Whether the whole arena is given up.
+    is_abandoned: &'a AtomicBool,
 }
 
 impl Part<'_> {
@@ -102,7 +110,7 @@ impl Part<'_> {
     /// If there are not as many.
     pub(crate) fn take(&mut self, lines: usize) -> Self {
         let (front, rest) = std::mem::take(&mut self.lines).split_at_mut(lines);
-        let part = Self { lines: front, first: self.first };
+        let part = Self { lines: front, first: self.first, is_abandoned: self.is_abandoned };
         (self.lines, self.first) = (rest, self.first + lines);
         part
     }
@@ -119,10 +127,18 @@ impl Part<'_> {
         // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
         unsafe { lines.as_mut_ptr().cast::<T>().write(thing) }
     }
+
+    /// Gives up the whole arena: nothing more need be written.
+    pub(crate) fn abandon(self) {
+        self.is_abandoned.store(true, Relaxed);
+    }
 }
 
 impl Drop for Part<'_> {
     fn drop(&mut self) {
+        if self.lines.is_empty() || self.is_abandoned.load(Relaxed) {
+            return;
+        }
         for line in &mut *self.lines {
             line.write(Line([0; 16]));
         }
@@ -175,12 +191,22 @@ mod tests {
             part.put(block);
             assert_eq!((part.first(), part.len()), (15, 15));
             all.first()
-        });
+        })
+        .expect("nothing is abandoned");
         assert_eq!((arena.len(), first), (lines, 30));
         for line in (0..lines).step_by(5) {
             let expected = if line == 10 { block } else { TriangleBlock::default() };
             assert_eq!(*arena.get::<TriangleBlock>(line), expected, "line {line}");
         }
+    }
+
+    #[test]
+    fn an_abandoned_arena_is_none() {
+        let filled = Arena::filled(10, |mut all| {
+            all.take(3).abandon();
+            all.put(TriangleBlock::default());
+        });
+        assert!(filled.is_none());
     }
 
     #[test]

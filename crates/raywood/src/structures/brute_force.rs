@@ -1,7 +1,7 @@
 //! No structure at all: every ray tests every primitive. The reference that the others are held against.
 
 use super::AccelerationStructure;
-use crate::build::{PackedAabb, driver};
+use crate::build::{PackedAabb, Work, driver};
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView};
 use crate::{PreparedRay, Probe, Ray, ValidationError};
@@ -19,8 +19,17 @@ impl BruteForce {
     /// # Errors
     ///
     /// Too many primitives, or one whose box is empty or not finite.
-    pub fn build<G: Geometry>(geometry: &G, _: &BuildOptions) -> Result<Self, BuildError> {
-        let boxes = driver::primitive_bounds(geometry)?;
+    pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
+        Self::build_in(geometry, options, Work::UNWATCHED)
+    }
+
+    /// Builds it as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        _: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        let boxes = driver::primitive_bounds(geometry, work)?;
         let bounds = boxes.iter().copied().fold(PackedAabb::EMPTY, PackedAabb::union).into();
         Ok(Self { primitives: boxes.len() as u32, bounds })
     }

@@ -4,7 +4,7 @@ use super::{
     AccelerationStructure, BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, WideBvh,
 };
 use crate::ValidationError;
-use crate::build::Builder;
+use crate::build::{Builder, Work};
 use crate::{BuildError, BuildOptions, Geometry, Hit, HitColumnsMut, NodeView, Probe};
 use crate::{Ray, SimdLevel, Vec3};
 
@@ -48,9 +48,10 @@ macro_rules! structures {
                 kind: StructureKind,
                 geometry: &G,
                 options: &BuildOptions,
+                work: Work<'_>,
             ) -> Result<Self, BuildError> {
                 Ok(match kind {
-                    $(StructureKind::$kind => Self::$kind($build(geometry, options)?),)*
+                    $(StructureKind::$kind => Self::$kind($build(geometry, options, work)?),)*
                 })
             }
         }
@@ -151,24 +152,24 @@ macro_rules! structures {
 }
 
 structures! {
-    BruteForce, BruteForce, "brute-force", "No structure: every ray tests every primitive.", BruteForce::build;
-    UniformGrid, UniformGrid, "uniform-grid", "Equal cells, walked one by one.", UniformGrid::build;
-    NestedGrid, NestedGrid, "nested-grid", "Grids in the crowded cells of a coarse grid.", NestedGrid::build;
+    BruteForce, BruteForce, "brute-force", "No structure: every ray tests every primitive.", BruteForce::build_in;
+    UniformGrid, UniformGrid, "uniform-grid", "Equal cells, walked one by one.", UniformGrid::build_in;
+    NestedGrid, NestedGrid, "nested-grid", "Grids in the crowded cells of a coarse grid.", NestedGrid::build_in;
     BvhMidpoint, Bvh2, "bvh-midpoint", "Binary BVH, split in the middle of the longest axis.",
-        |geometry, options| Bvh2::build_by(Builder::Midpoint, geometry, options);
+        |geometry, options, work| Bvh2::build_in(Builder::Midpoint, geometry, options, work);
     BvhMedian, Bvh2, "bvh-median", "Binary BVH, halved by number of primitives.",
-        |geometry, options| Bvh2::build_by(Builder::Median, geometry, options);
+        |geometry, options, work| Bvh2::build_in(Builder::Median, geometry, options, work);
     BvhSahSweep, Bvh2, "bvh-sah-sweep", "Binary BVH, every split tried by the surface area heuristic.",
-        |geometry, options| Bvh2::build_by(Builder::SahSweep, geometry, options);
+        |geometry, options, work| Bvh2::build_in(Builder::SahSweep, geometry, options, work);
     BvhSahBinned, Bvh2, "bvh-sah-binned", "Binary BVH, splits between bins tried by the surface area heuristic.",
-        |geometry, options| Bvh2::build_by(Builder::SahBinned, geometry, options);
+        |geometry, options, work| Bvh2::build_in(Builder::SahBinned, geometry, options, work);
     BvhLbvh, Bvh2, "bvh-lbvh", "Binary BVH, split where a space-filling curve through the primitives turns.",
-        |geometry, options| Bvh2::build_by(Builder::Lbvh, geometry, options);
+        |geometry, options, work| Bvh2::build_in(Builder::Lbvh, geometry, options, work);
     BvhHlbvh, Bvh2, "bvh-hlbvh", "Binary BVH, leaves from a space-filling curve, the rest as bvh-sah-binned.",
-        |geometry, options| Bvh2::build_by(Builder::Hlbvh, geometry, options);
-    BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions: the default.", WideBvh::build;
-    Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build;
-    KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build;
+        |geometry, options, work| Bvh2::build_in(Builder::Hlbvh, geometry, options, work);
+    BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions: the default.", WideBvh::build_in;
+    Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build_in;
+    KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build_in;
 }
 
 impl Default for StructureKind {

@@ -1,7 +1,10 @@
 //! The facade over structures of any kind: a geometry and a structure over it.
 
+use std::ops::ControlFlow;
+
 use super::registry::AnyStructure;
 use super::{AccelerationStructure, StructureKind};
+use crate::build::{Work, watched};
 use crate::{BuildError, BuildOptions, Geometry, Hit, HitColumns, Probe, Ray, StructureStats};
 use crate::{NodeView, SimdLevel, SurfacePoint, ValidationError, Vec3, parallel};
 
@@ -37,7 +40,24 @@ impl<G: Geometry> Structure<G> {
         geometry: G,
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        let structure = AnyStructure::build(kind, &geometry, options)?;
+        let structure = AnyStructure::build(kind, &geometry, options, Work::UNWATCHED)?;
+        Ok(Self { geometry, kind, structure })
+    }
+
+    /// As [`build`](Self::build), watched: see [`Bvh::build_watched`](crate::Bvh::build_watched). Trees (`bvh-*`) tell how far they are and can be stopped at any time;
+    /// grids, octree and kD-tree tell less, and of a model of millions of triangles may take some tenths of a second to stop.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build), and [`BuildError::Cancelled`] if the watcher said so.
+    pub fn build_watched(
+        kind: StructureKind,
+        geometry: G,
+        options: &BuildOptions,
+        watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        let build = |work: Work<'_>| AnyStructure::build(kind, &geometry, options, work);
+        let structure = watched(watcher, build)?;
         Ok(Self { geometry, kind, structure })
     }
 

@@ -1,8 +1,11 @@
 //! A binary tree with links to parents, so that subtrees can be moved.
 
 use crate::Aabb;
-use crate::build::PackedAabb;
+use crate::build::{Cancelled, PackedAabb, Work};
 use crate::structures::{Bvh2, MAX_DEPTH, Node};
+
+/// After so many nodes are copied the build asks whether to go on.
+const STRETCH: usize = 1 << 16;
 
 /// A tree whose nodes know their parents and heights.
 ///
@@ -20,27 +23,40 @@ pub(super) struct LinkedTree {
 
 impl LinkedTree {
     /// Links the nodes of a tree in which children come after their parents, as all builders make it.
-    pub(super) fn new(tree: Bvh2) -> Self {
+    pub(super) fn new(tree: Bvh2, work: Work<'_>) -> Result<Self, Cancelled> {
         let (nodes, primitive_indices) = tree.into_parts();
         let mut parents = vec![0; nodes.len() / 2];
         let mut heights = vec![0u8; nodes.len()];
-        for (number, node) in nodes.iter().enumerate().rev().filter(|(_, node)| !node.is_leaf()) {
-            let left = node.left_first() as usize;
-            debug_assert!(left > number && left % 2 == 1);
-            parents[left / 2] = number as u32;
-            heights[number] = 1 + heights[left].max(heights[left + 1]);
-        }
-        Self { nodes, parents, heights, primitive_indices }
+        // From the last to the first.
+        let last = nodes.len().wrapping_sub(1);
+        work.in_stretches(nodes.len(), |stretch| {
+            for number in stretch.map(|place| last - place) {
+                let node = &nodes[number];
+                if !node.is_leaf() {
+                    let left = node.left_first() as usize;
+                    debug_assert!(left > number && left % 2 == 1);
+                    parents[left / 2] = number as u32;
+                    heights[number] = 1 + heights[left].max(heights[left + 1]);
+                }
+            }
+        })?;
+        Ok(Self { nodes, parents, heights, primitive_indices })
     }
 
     /// The tree as it is to be traversed: depth first, the primitives of every subtree side by side.
-    pub(super) fn into_bvh2(self) -> Bvh2 {
+    pub(super) fn into_bvh2(self, work: Work<'_>) -> Result<Bvh2, Cancelled> {
         let mut nodes = Vec::with_capacity(self.nodes.len());
         let mut primitive_indices = Vec::with_capacity(self.primitive_indices.len());
         nodes.push(self.nodes[0]);
         // Nodes whose content is still to be copied, by their new number.
         let mut pending = vec![0usize];
+        let stretch = work.part(STRETCH, self.nodes.len());
+        let mut copied = 0;
         while let Some(number) = pending.pop() {
+            copied += 1;
+            if copied % STRETCH == 0 {
+                stretch.done()?;
+            }
             let node = nodes[number];
             let (first, count) = (node.left_first() as usize, node.count() as usize);
             if node.is_leaf() {
@@ -55,7 +71,7 @@ impl LinkedTree {
                 pending.push(left);
             }
         }
-        Bvh2::from_parts(nodes, primitive_indices)
+        Ok(Bvh2::from_parts(nodes, primitive_indices))
     }
 
     /// How many nodes there are; the root is number 0.

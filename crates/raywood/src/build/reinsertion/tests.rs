@@ -2,6 +2,7 @@
 
 use super::linked_tree::LinkedTree;
 use super::search::best_move;
+use crate::build::Work;
 use crate::{BuildOptions, Bvh2, Spheres, Vec3};
 
 /// A tree over spheres of different sizes, one in each leaf, built badly.
@@ -15,7 +16,7 @@ fn tree(count: usize, seed: u32) -> (Spheres, LinkedTree) {
     let spheres = Spheres::new((0..count).map(|_| sphere()).collect()).expect("finite spheres");
     let options = BuildOptions { max_leaf_size: 1, bins: 2, ..Default::default() };
     let tree = Bvh2::build(&spheres, &options).expect("it builds");
-    (spheres, LinkedTree::new(tree))
+    (spheres, LinkedTree::new(tree, Work::UNWATCHED).expect("nobody stops it"))
 }
 
 /// All moves that change something.
@@ -37,7 +38,10 @@ fn a_move_changes_the_cost_as_it_says_and_can_be_taken_back() {
             let parent = tree.parent(from);
             let growth = tree.move_beside(from, to);
             assert_near(tree.cost(), before.cost() + growth);
-            assert_eq!(tree.clone().into_bvh2().check(&spheres), Ok(()));
+            assert_eq!(
+                tree.clone().into_bvh2(Work::UNWATCHED).expect("nobody stops it").check(&spheres),
+                Ok(())
+            );
             assert_near(tree.move_beside(from, parent), -growth);
             assert!(tree == before, "{from} beside {to} and back");
         }

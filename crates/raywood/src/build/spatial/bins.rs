@@ -1,8 +1,11 @@
 //! Where to cut space: references sorted into bins, those that reach through several cut into as many parts.
 
-use super::super::{PackedAabb, Primitive};
+use super::super::{Cancelled, PackedAabb, Primitive, Work};
 use super::cut::{Plane, cut};
 use crate::Geometry;
+
+/// After so many references it is asked whether to go on.
+pub(super) const PIECE: usize = 1 << 14;
 
 /// The bins per axis.
 const BINS: usize = 16;
@@ -14,15 +17,16 @@ pub(super) struct Cut {
     pub(super) cost: f64,
 }
 
-/// The best plane to cut some references at, with the given box around them; `None` if there is none.
+/// The best plane to cut some references at, with the given box around them; `None` if there is none, or the work is cancelled.
 pub(super) fn best_cut<G: Geometry>(
     geometry: &G,
     references: &[Primitive],
     bounds: &PackedAabb,
+    work: Work<'_>,
 ) -> Option<Cut> {
     let along = |axis| {
         let slices = Slices::new(bounds, axis)?;
-        Contents::of(geometry, references, &slices).best_cut(&slices)
+        Contents::of(geometry, references, &slices, work).ok()?.best_cut(&slices)
     };
     (0..3).filter_map(along).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
@@ -88,30 +92,44 @@ struct Contents {
 }
 
 impl Contents {
-    fn of<G: Geometry>(geometry: &G, references: &[Primitive], slices: &Slices) -> Self {
+    fn of<G: Geometry>(
+        geometry: &G,
+        references: &[Primitive],
+        slices: &Slices,
+        work: Work<'_>,
+    ) -> Result<Self, Cancelled> {
         let mut contents =
             Self { bounds: [PackedAabb::EMPTY; BINS], begin: [0; BINS], end: [0; BINS] };
-        let axis = slices.axis;
-        for reference in references {
-            let (mut first, mut last) = slices.reached(reference.bounds());
-            if first < last && geometry.triangle(reference.number()).is_none() {
-                // What cannot be cut lies where its centre is.
-                first = slices.bin(reference.center()[axis]);
-                last = first;
+        for piece in references.chunks(PIECE) {
+            work.ask()?;
+            for reference in piece {
+                contents.take(geometry, reference, slices);
             }
-            let mut rest = *reference;
-            for bin in first..last {
-                let plane = Plane { axis, place: slices.plane(bin + 1) };
-                if let Some([left, right]) = cut(geometry, plane, &rest) {
-                    contents.bounds[bin].grow(&left);
-                    rest = Primitive::new(rest.number(), right);
-                }
-            }
-            contents.bounds[last].grow(rest.bounds());
-            contents.begin[first] += 1;
-            contents.end[last] += 1;
         }
-        contents
+        Ok(contents)
+    }
+
+    /// Takes a reference into the bins that it reaches.
+    #[inline(always)]
+    fn take<G: Geometry>(&mut self, geometry: &G, reference: &Primitive, slices: &Slices) {
+        let axis = slices.axis;
+        let (mut first, mut last) = slices.reached(reference.bounds());
+        if first < last && geometry.triangle(reference.number()).is_none() {
+            // What cannot be cut lies where its centre is.
+            first = slices.bin(reference.center()[axis]);
+            last = first;
+        }
+        let mut rest = *reference;
+        for bin in first..last {
+            let plane = Plane { axis, place: slices.plane(bin + 1) };
+            if let Some([left, right]) = cut(geometry, plane, &rest) {
+                self.bounds[bin].grow(&left);
+                rest = Primitive::new(rest.number(), right);
+            }
+        }
+        self.bounds[last].grow(rest.bounds());
+        self.begin[first] += 1;
+        self.end[last] += 1;
     }
 
     /// The best plane between two bins.

@@ -12,7 +12,7 @@ mod partition;
 
 use super::driver::{self, Around, PARALLEL_SUBTREES, Set, Split, Splitter};
 use super::sah_binned::BinnedSah;
-use super::{PackedAabb, Primitive};
+use super::{Builder as BinaryBuilder, Cancelled, PackedAabb, Primitive, Work};
 use crate::structures::{Bvh2, Node};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3, parallel};
 use bins::best_cut;
@@ -22,14 +22,27 @@ use partition::partition;
 /// more and gains nothing.
 const LEAST_OVERLAP: f64 = 1e-3;
 
+/// About how long it takes, in the units of [`Bvh2::cost_for_wide`].
+pub(super) const COST: f64 = 1000.0;
+
+/// Whether the options ask for a wide tree in which triangles are cut.
+pub(super) fn is_asked_for(options: &BuildOptions) -> bool {
+    options.wide_builder == BinaryBuilder::SahBinned && options.clamped().spatial_splits > 0.0
+}
+
 /// Builds the binary tree, in parallel. A primitive may lie in several leaves, whose boxes are around parts of it. The same for any number of threads.
 ///
 /// # Errors
 ///
-/// Too many primitives, or one whose box is empty or not finite.
-pub(super) fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Bvh2, BuildError> {
+/// Too many primitives, one whose box is empty or not finite, or the wish to stop.
+pub(super) fn build<G: Geometry>(
+    geometry: &G,
+    options: &BuildOptions,
+    work: Work<'_>,
+) -> Result<Bvh2, BuildError> {
     let options = options.clamped();
-    let mut references = driver::primitives(geometry)?;
+    let [listing, building] = work.shares([1.0, 100.0]);
+    let mut references = driver::primitives(geometry, listing)?;
     let count = references.len();
     let Some(&some) = references.first() else {
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
@@ -43,7 +56,7 @@ pub(super) fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result
     let objects = BinnedSah::new(&options);
     let builder = Builder { geometry, least_overlap, margin, objects };
     let set = References { references: &mut references, count, around };
-    let mut tree = builder.grow(set, 1);
+    let mut tree = builder.grow(set, 1, building)?;
     fit(&mut tree.nodes);
     Ok(Bvh2::from_parts(tree.nodes, tree.numbers))
 }
@@ -88,23 +101,37 @@ struct Builder<'a, G> {
 
 impl<G: Geometry> Builder<'_, G> {
     /// Builds a subtree whose root lies on level `depth`, from 1; in parallel if it is large.
-    fn grow(&self, mut set: References<'_>, depth: usize) -> Subtree {
+    fn grow(
+        &self,
+        mut set: References<'_>,
+        depth: usize,
+        work: Work<'_>,
+    ) -> Result<Subtree, Cancelled> {
+        work.check()?;
         let bounds = set.around.bounds;
-        if set.count > PARALLEL_SUBTREES
-            && let Some(divided) = self.divide(&mut set, depth)
-        {
-            let [left, right] = set.split_at(&divided);
-            let (left, right) = parallel::join_if(
-                true,
-                || self.grow(left, depth + 1),
-                || self.grow(right, depth + 1),
-            );
-            return Subtree::of(bounds, [left, right]);
+        if set.count > PARALLEL_SUBTREES {
+            // Every level below takes about as long as this one.
+            let levels = (set.count as f64).log2();
+            let [dividing, growing] = work.shares([1.0, levels]);
+            let divided = self.divide(&mut set, depth, dividing);
+            dividing.done()?;
+            if let Some(divided) = divided {
+                let [left, right] = set.split_at(&divided);
+                let [left_work, right_work] =
+                    growing.shares([left.count as f64, right.count as f64]);
+                let (left, right) = parallel::join_if(
+                    true,
+                    || self.grow(left, depth + 1, left_work),
+                    || self.grow(right, depth + 1, right_work),
+                );
+                return Ok(Subtree::of(bounds, [left?, right?]));
+            }
         }
         let mut tree = Subtree::default();
         tree.nodes.push(Node::leaf(bounds.into(), 0, 0));
         self.subdivide(set, (0, depth), &mut tree);
-        tree
+        work.done()?;
+        Ok(tree)
     }
 
     /// Makes node `number` that of a set, and appends what is below it.
@@ -115,7 +142,7 @@ impl<G: Geometry> Builder<'_, G> {
         tree: &mut Subtree,
     ) {
         let bounds = set.around.bounds.into();
-        let Some(divided) = self.divide(&mut set, depth) else {
+        let Some(divided) = self.divide(&mut set, depth, Work::UNWATCHED) else {
             let references = &set.references[..set.count];
             let first = tree.numbers.len() as u32;
             tree.numbers.extend(references.iter().map(Primitive::number));
@@ -141,13 +168,13 @@ impl<G: Geometry> Builder<'_, G> {
     }
 
     /// Divides a set in two, the left one's references first, or says by `None` that it should be a leaf.
-    fn divide(&self, set: &mut References<'_>, depth: usize) -> Option<Split> {
+    fn divide(&self, set: &mut References<'_>, depth: usize, work: Work<'_>) -> Option<Split> {
         let References { references, count, around } = set;
         if *count == 1 {
             return None;
         }
         let mut objects =
-            Set { primitives: &mut references[..*count], spare: &mut [], around: *around };
+            Set { primitives: &mut references[..*count], spare: &mut [], around: *around, work };
         if driver::must_halve(*count, depth) {
             return Some(driver::split_at_median(&mut objects));
         }
@@ -156,9 +183,9 @@ impl<G: Geometry> Builder<'_, G> {
             return Some(split);
         }
         let cost = split.cost(*count);
-        let cut = best_cut(self.geometry, &references[..*count], &around.bounds);
+        let cut = best_cut(self.geometry, &references[..*count], &around.bounds, work);
         let cut = cut.filter(|cut| cut.cost < cost);
-        let cut = cut.and_then(|cut| partition(self.geometry, references, *count, cut.plane));
+        let cut = cut.and_then(|cut| partition(self.geometry, references, *count, cut.plane, work));
         let Some((cut, total)) = cut else { return Some(split) };
         *count = total;
         Some(cut)

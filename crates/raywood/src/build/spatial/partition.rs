@@ -1,7 +1,8 @@
 //! Dividing references at a plane.
 
 use super::super::driver::{Around, Split};
-use super::super::{PackedAabb, Primitive};
+use super::super::{PackedAabb, Primitive, Work};
+use super::bins::PIECE;
 use super::cut::{Plane, Side, cut};
 use crate::Geometry;
 
@@ -72,16 +73,20 @@ impl Half {
 
 /// Divides the first `count` references at a plane, the left ones first, and tells how many there are then. Those that the plane crosses are cut, or put to one
 /// side as a whole where that costs less (reference unsplitting). `None`, with nothing changed, where there is no room for as many more as it crosses, or where
-/// all would lie on one side.
+/// all would lie on one side; or where the work is cancelled.
 pub(super) fn partition<G: Geometry>(
     geometry: &G,
     references: &mut [Primitive],
     count: usize,
     plane: Plane,
+    work: Work<'_>,
 ) -> Option<(Split, usize)> {
     let (mut left, mut right) = (Half::NOTHING, Half::NOTHING);
     let mut crossing = Vec::new();
-    for reference in &references[..count] {
+    for (number, reference) in references[..count].iter().enumerate() {
+        if number % PIECE == 0 {
+            work.ask().ok()?;
+        }
         let place = match plane.side_of(reference.bounds()) {
             Side::Left => Place::Left(*reference.bounds()),
             Side::Right => Place::Right(*reference.bounds()),

@@ -1,6 +1,7 @@
 //! Which primitives lie in which cell of a lattice: counted, then written.
 
 use super::lattice::{Block, Lattice};
+use crate::build::{Cancelled, Work};
 use crate::{Aabb, Geometry, parallel};
 
 /// Sets larger than this are worked on in parallel.
@@ -29,13 +30,21 @@ impl<G: Geometry> Content<'_, G> {
     /// Puts the primitives into about `cells` cells, fewer if it takes more than `limit` references.
     ///
     /// The limit is kept by counting the cells that the boxes touch, each time with half as many cells: O(N log cells).
-    pub(super) fn divide(&self, cells: f64, limit: u64) -> Cells {
+    pub(super) fn divide(
+        &self,
+        cells: f64,
+        limit: u64,
+        work: Work<'_>,
+    ) -> Result<Cells, Cancelled> {
+        let [measuring, reaching, counting, writing] = work.shares([2.0, 8.0, 1.0, 1.0]);
         let around = |all: &mut Aabb, bounds: &Aabb| *all = all.union(*bounds);
         let bounds = parallel::fold(self.bounds, Aabb::EMPTY, around, around);
         let mut target = cells;
         let (lattice, blocks) = loop {
             let lattice = Lattice::new(&bounds, target);
-            let blocks = parallel::map(self.bounds.len(), |i| lattice.touched(&self.bounds[i]));
+            let touched = |i: usize| lattice.touched(&self.bounds[i]);
+            let blocks =
+                parallel::map_watched(self.bounds.len(), measuring.without_progress(), touched)?;
             let add = |sum: &mut u64, block: &Block| *sum += block.cells();
             let references = parallel::fold(&blocks, 0, add, |sum, part| *sum += part);
             if references <= limit || lattice.cells() == 1 {
@@ -44,12 +53,16 @@ impl<G: Geometry> Content<'_, G> {
             target = (0.5 * target).min(lattice.cells() as f64 - 1.0);
         };
 
+        measuring.done()?;
+
         // Count, sum up, write.
-        let members = parallel::map(blocks.len(), |i| self.members(&lattice, &blocks[i], i));
+        let members = |i: usize| self.members(&lattice, &blocks[i], i);
+        let members = parallel::map_watched(blocks.len(), reaching, members)?;
         let filing =
-            Filing { content: self, lattice: &lattice, blocks: &blocks, members: &members };
+            Filing { content: self, lattice: &lattice, blocks: &blocks, members: &members, work };
         let mut counts = vec![0u32; lattice.cells()];
         filing.count(0, &mut counts);
+        counting.done()?;
         let mut starts = Vec::with_capacity(counts.len() + 1);
         let mut sum = 0;
         starts.push(0);
@@ -59,7 +72,8 @@ impl<G: Geometry> Content<'_, G> {
         }));
         let mut references = vec![0u32; sum as usize];
         filing.write(0, &starts, &mut references);
-        Cells { lattice, starts, references }
+        writing.done()?;
+        Ok(Cells { lattice, starts, references })
     }
 
     /// The cells of a block that the primitive itself reaches, one bit each, counted along x, then y, then z. All of them if it is a row,
@@ -91,6 +105,8 @@ struct Filing<'a, G> {
     blocks: &'a [Block],
     /// Of each block the cells that its primitive reaches: asked once, needed twice and by several tasks.
     members: &'a [u64],
+    /// To be asked before each task.
+    work: Work<'a>,
 }
 
 impl<G: Geometry> Filing<'_, G> {
@@ -136,6 +152,9 @@ impl<G: Geometry> Filing<'_, G> {
     /// Calls `f` with cell and primitive for each primitive and each of its cells among the `cells` from `first` on, which are
     /// counted from 0.
     fn for_each(&self, first: usize, cells: usize, mut f: impl FnMut(usize, u32)) {
+        if self.work.ask().is_err() {
+            return;
+        }
         let mine = first..first + cells;
         let blocks = self.blocks.iter().zip(self.members);
         for ((block, &members), &primitive) in blocks.zip(self.content.primitives) {

@@ -2,6 +2,7 @@
 
 use super::build::Shape;
 use super::pool::GridPool;
+use crate::build::Work;
 use crate::structures::AccelerationStructure;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
@@ -28,10 +29,20 @@ impl NestedGrid {
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
+        Self::build_in(geometry, options, Work::UNWATCHED)
+    }
+
+    /// Builds it as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
         let density = 0.25 * f64::from(options.clamped().grid_density);
-        let mut grids = GridPool::build(geometry, &Shape { density, duplication: 4 })?;
-        for _ in 1..LEVELS {
-            grids.refine(geometry, &Shape { density, duplication: 2 });
+        let [outermost, inner @ ..] = work.shares([1.0; LEVELS]);
+        let mut grids = GridPool::build(geometry, &Shape { density, duplication: 4 }, outermost)?;
+        for work in inner {
+            grids.refine(geometry, &Shape { density, duplication: 2 }, work)?;
         }
         Ok(Self(grids))
     }

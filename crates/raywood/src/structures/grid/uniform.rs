@@ -2,6 +2,7 @@
 
 use super::build::Shape;
 use super::pool::GridPool;
+use crate::build::Work;
 use crate::structures::AccelerationStructure;
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
@@ -29,8 +30,17 @@ impl UniformGrid {
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
+        Self::build_in(geometry, options, Work::UNWATCHED)
+    }
+
+    /// Builds it as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
         let density = f64::from(options.clamped().grid_density);
-        Ok(Self(GridPool::build(geometry, &Shape { density, duplication: DUPLICATION })?))
+        Ok(Self(GridPool::build(geometry, &Shape { density, duplication: DUPLICATION }, work)?))
     }
 }
 

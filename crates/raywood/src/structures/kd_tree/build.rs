@@ -2,6 +2,7 @@
 
 use super::split::{Reference, Split, choose};
 use super::{KdNode, KdTree, halves};
+use crate::build::Work;
 use crate::build::driver::primitive_bounds;
 use crate::{Aabb, BuildError, BuildOptions, Geometry, parallel};
 
@@ -15,12 +16,14 @@ const MAX_PRIMITIVES: usize = KdNode::NUMBERS / 2;
 pub(super) fn build<G: Geometry>(
     geometry: &G,
     options: &BuildOptions,
+    work: Work<'_>,
 ) -> Result<KdTree, BuildError> {
     let n = geometry.len();
     if n > MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { primitives: n });
     }
-    let primitive_bounds = primitive_bounds(geometry)?;
+    let [listing, dividing] = work.shares([1.0, 100.0]);
+    let primitive_bounds = primitive_bounds(geometry, listing)?;
     let references: Vec<Reference> = primitive_bounds
         .iter()
         .zip(0..)
@@ -37,7 +40,8 @@ pub(super) fn build<G: Geometry>(
             spare: (5 * n + 64).min(MAX_PRIMITIVES - n),
         };
         subtree.nodes.push(KdNode::leaf(0, 0));
-        builder.subdivide(&mut subtree, 0, bounds, references, room);
+        builder.subdivide(&mut subtree, 0, bounds, references, (room, dividing));
+        work.check()?;
     }
     subtree.nodes.shrink_to_fit();
     subtree.primitive_indices.shrink_to_fit();
@@ -67,15 +71,18 @@ struct Builder<'a, G> {
 }
 
 impl<G: Geometry> Builder<'_, G> {
-    /// Puts the tree over the references into a node of the subtree and behind its last one.
+    /// Puts the tree over the references into a node of the subtree and behind its last one. Small ones do not report their work.
     fn subdivide(
         &self,
         subtree: &mut Subtree,
         node: usize,
         cell: Aabb,
         references: Vec<Reference>,
-        room: Room,
+        (room, work): (Room, Work<'_>),
     ) {
+        if references.len() > PARALLEL_SUBTREES && work.ask().is_err() {
+            return;
+        }
         let split = if room.levels == 0 { None } else { choose(&references, &cell, &self.options) };
         let count = references.len();
         let parts = split.map(|split| (split, self.distribute(&references, &cell, &split)));
@@ -105,17 +112,27 @@ impl<G: Geometry> Builder<'_, G> {
         subtree.nodes[node] = KdNode::plane(split.axis, split.position, first_child);
         subtree.nodes.extend([KdNode::leaf(0, 0); 2]);
         if count > PARALLEL_SUBTREES {
-            let (mut left_subtree, mut right_subtree) = (Subtree::new(), Subtree::new());
-            parallel::join_if(
+            let [work_left, work_right] = work.shares([left.len() as f64, right.len() as f64]);
+            let grow = |cell, references: Vec<Reference>, room, work: Work<'_>| {
+                let is_small = references.len() <= PARALLEL_SUBTREES;
+                let mut subtree = Subtree::new();
+                self.subdivide(&mut subtree, 0, cell, references, (room, work));
+                if is_small {
+                    // If the build is stopped, the next large set sees it.
+                    let _ = work.done();
+                }
+                subtree
+            };
+            let (left, right) = parallel::join_if(
                 true,
-                || self.subdivide(&mut left_subtree, 0, below, left, room_left),
-                || self.subdivide(&mut right_subtree, 0, above, right, room_right),
+                || grow(below, left, room_left, work_left),
+                || grow(above, right, room_right, work_right),
             );
-            subtree.graft(first_child, left_subtree);
-            subtree.graft(first_child + 1, right_subtree);
+            subtree.graft(first_child, left);
+            subtree.graft(first_child + 1, right);
         } else {
-            self.subdivide(subtree, first_child, below, left, room_left);
-            self.subdivide(subtree, first_child + 1, above, right, room_right);
+            self.subdivide(subtree, first_child, below, left, (room_left, work));
+            self.subdivide(subtree, first_child + 1, above, right, (room_right, work));
         }
     }
 

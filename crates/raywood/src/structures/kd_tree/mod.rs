@@ -9,6 +9,7 @@ mod traverse;
 pub use node::KdNode;
 
 use super::AccelerationStructure;
+use crate::build::Work;
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
 use node::Content;
@@ -36,7 +37,16 @@ impl KdTree {
     ///
     /// More than 2^29 primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
-        build::build(geometry, options)
+        Self::build_in(geometry, options, Work::UNWATCHED)
+    }
+
+    /// Builds it as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        build::build(geometry, options, work)
     }
 
     /// All nodes; the first is the root.

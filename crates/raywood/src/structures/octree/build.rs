@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cell::{Placement, middle, octant};
 use super::{Node, Octree};
-use crate::build::{PackedAabb, driver};
+use crate::build::{PackedAabb, Work, driver};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3, parallel};
 
 /// How many references a primitive may have on average.
@@ -23,8 +23,10 @@ const PARALLEL_PLACEMENT: usize = 1 << 16;
 pub(super) fn build<G: Geometry>(
     geometry: &G,
     options: &BuildOptions,
+    work: Work<'_>,
 ) -> Result<Octree, BuildError> {
-    let bounds = driver::primitive_bounds(geometry)?;
+    let [listing, dividing] = work.shares([1.0, 30.0]);
+    let bounds = driver::primitive_bounds(geometry, listing)?;
     let n = bounds.len();
     let root: Aabb =
         parallel::fold(&bounds, PackedAabb::EMPTY, PackedAabb::grow, PackedAabb::grow).into();
@@ -35,8 +37,9 @@ pub(super) fn build<G: Geometry>(
         let allowance = MAX_REFERENCES.min(MAX_TOTAL_REFERENCES / n as f64);
         let mut lists = Lists { primitives: (0..n as u32).collect(), octants: Vec::new() };
         let mut pool = Pool { nodes: vec![Node::default()], references: Vec::new() };
-        let cell = CrowdedCell { bounds: root, level: 1, allowance };
+        let cell = CrowdedCell { bounds: root, level: 1, allowance, work: dividing };
         pool.nodes[0] = builder.subdivide(&mut pool, &mut lists, 0..n, &cell);
+        work.check()?;
         (nodes, references) = (pool.nodes, pool.references);
         nodes.shrink_to_fit();
         references.shrink_to_fit();
@@ -52,12 +55,14 @@ struct OctreeBuilder<'a, G> {
 }
 
 /// A cell that may be divided.
-struct CrowdedCell {
+struct CrowdedCell<'a> {
     bounds: Aabb,
     level: usize,
     /// How many references each of its primitives may come to have inside it, on average. A division into octants that hold `m`
     /// of `n` primitives uses up a factor of `m/n`, so that whatever the scene no subtree exceeds its share.
     allowance: f64,
+    /// What dividing it is of the whole build. Small cells do not report it.
+    work: Work<'a>,
 }
 
 /// The finished part of a tree.
@@ -75,13 +80,15 @@ struct Lists {
 /// The primitives of the eight octants, each a stretch of the list.
 struct Division {
     octants: [Range<usize>; 8],
+    /// How many they have together.
+    references: usize,
     allowance: f64,
 }
 
 /// One octant's part of the work when octants are built in parallel.
-struct Task {
+struct Task<'a> {
     lists: Lists,
-    cell: CrowdedCell,
+    cell: CrowdedCell<'a>,
     pool: Pool,
     node: Node,
 }
@@ -93,9 +100,12 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
         pool: &mut Pool,
         lists: &mut Lists,
         primitives: Range<usize>,
-        cell: &CrowdedCell,
+        cell: &CrowdedCell<'_>,
     ) -> Node {
         let (count, end) = (primitives.len(), lists.primitives.len());
+        if count > PARALLEL_CELL && cell.work.check().is_err() {
+            return Node::default();
+        }
         let middle = middle(&cell.bounds);
         let Some(division) = self.divide(lists, primitives.clone(), cell, middle) else {
             let first = pool.references.len();
@@ -109,13 +119,18 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
         let children = octants.map(|number| {
             let bounds = octant(&cell.bounds, middle, number);
             let (level, allowance) = (cell.level + 1, division.allowance);
-            (division.octants[number].clone(), CrowdedCell { bounds, level, allowance })
+            let stretch = division.octants[number].clone();
+            let work = match count > PARALLEL_CELL {
+                true => cell.work.part(stretch.len(), division.references),
+                false => cell.work,
+            };
+            (stretch, CrowdedCell { bounds, level, allowance, work })
         });
         let set = (0..8)
             .fold(0, |set, number| set | u8::from(!division.octants[number].is_empty()) << number);
         pool.nodes.resize(first + set.count_ones() as usize, Node::default());
         if count > PARALLEL_CELL {
-            let mut tasks: Vec<Task> = children
+            let mut tasks: Vec<Task<'_>> = children
                 .map(|(stretch, cell)| Task {
                     lists: Lists {
                         primitives: lists.primitives[stretch].to_vec(),
@@ -145,7 +160,7 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
         &self,
         lists: &mut Lists,
         primitives: Range<usize>,
-        cell: &CrowdedCell,
+        cell: &CrowdedCell<'_>,
         middle: Vec3,
     ) -> Option<Division> {
         let count = primitives.len();
@@ -162,7 +177,8 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
         };
         octants.clear();
         if count > PARALLEL_PLACEMENT {
-            *octants = parallel::map(count, |i| place(members[i]));
+            let work = cell.work.without_progress();
+            *octants = parallel::map_watched(count, work, |i| place(members[i])).ok()?;
         } else {
             octants.extend(members.iter().map(|&primitive| place(primitive)));
         }
@@ -205,16 +221,20 @@ impl<G: Geometry> OctreeBuilder<'_, G> {
                 rest &= rest - 1;
             }
         }
-        Some(Division { octants, allowance: cell.allowance / growth })
+        Some(Division { octants, references: total, allowance: cell.allowance / growth })
     }
 
     /// Builds octants, each into a pool of its own, in parallel.
-    fn run(&self, tasks: &mut [Task]) {
+    fn run(&self, tasks: &mut [Task<'_>]) {
         match tasks {
             [] => {}
             [Task { lists, cell, pool, node }] => {
                 let all = 0..lists.primitives.len();
-                *node = self.subdivide(pool, lists, all, cell);
+                *node = self.subdivide(pool, lists, all.clone(), cell);
+                if all.len() <= PARALLEL_CELL {
+                    // If the build is stopped, the next large cell sees it.
+                    let _ = cell.work.done();
+                }
             }
             _ => {
                 let (some, others) = tasks.split_at_mut(tasks.len() / 2);

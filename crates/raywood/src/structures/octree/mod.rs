@@ -6,6 +6,7 @@ mod check;
 mod traverse;
 
 use super::AccelerationStructure;
+use crate::build::Work;
 use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, Probe, Ray};
@@ -88,7 +89,16 @@ impl Octree {
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
-        build::build(geometry, &options.clamped())
+        Self::build_in(geometry, options, Work::UNWATCHED)
+    }
+
+    /// Builds it as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        build::build(geometry, &options.clamped(), work)
     }
 
     /// The box around everything, which is the root's cell; empty if there is nothing.

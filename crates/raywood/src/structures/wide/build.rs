@@ -4,6 +4,7 @@ use super::WideBvh;
 use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
 use super::node::{Reference, WIDTH, WideNode};
 use super::parts::Parts;
+use crate::build::Work;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, Part};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
@@ -11,21 +12,35 @@ use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel}
 /// How often the binary tree is improved by reinsertion unless the options say it.
 const REINSERTION_PASSES: usize = 4;
 
+/// About how long planning takes, in the units of [`Bvh2::cost`].
+const PLAN_COST: f64 = 20.0;
+
+/// About how long it takes to fill the tree.
+const FILL_COST: f64 = 25.0;
+
 /// Subtrees of more lines are filled in parallel.
 const PARALLEL_LINES: usize = 1 << 13;
+
+/// With which options the binary tree is built.
+fn binary_options(options: &BuildOptions) -> BuildOptions {
+    BuildOptions {
+        max_leaf_size: options.max_leaf_size.min(options.clamped().wide_leaf_size),
+        reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
+        ..options.clone()
+    }
+}
 
 /// Builds the tree.
 pub(super) fn build<G: Geometry>(
     geometry: &G,
     options: &BuildOptions,
+    work: Work<'_>,
 ) -> Result<WideBvh, BuildError> {
-    let options = BuildOptions {
-        max_leaf_size: options.max_leaf_size.min(options.clamped().wide_leaf_size),
-        reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
-        ..options.clone()
-    };
-    let tree = Bvh2::build_for_wide(geometry, &options)?;
-    let plan = Plan::new(&tree);
+    let options = binary_options(options);
+    let binary = Bvh2::cost_for_wide(&options);
+    let [building, planning, filling] = work.shares([binary, PLAN_COST, FILL_COST]);
+    let tree = Bvh2::build_for_wide(geometry, &options, building)?;
+    let plan = Plan::new(&tree, planning)?;
     let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
     let lines = match tree.nodes() {
         [] => 0,
@@ -35,8 +50,8 @@ pub(super) fn build<G: Geometry>(
     if lines > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
-    let wide = Wide { geometry, tree: &tree, plan: &plan };
-    let (arena, (root, depth)) = Arena::filled(lines, |all| match tree.nodes() {
+    let wide = Wide { geometry, tree: &tree, plan: &plan, work: filling, lines };
+    let filled = Arena::filled(lines, |all| match tree.nodes() {
         [] => (Reference::NOTHING, 0),
         _ if is_node => (Reference::node(0), wide.fill(0, all)),
         _ => {
@@ -45,6 +60,7 @@ pub(super) fn build<G: Geometry>(
             (wide.leaf(primitives, &corners, all), 0)
         }
     });
+    let (arena, (root, depth)) = filled.ok_or(BuildError::Cancelled)?;
     let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     let triangle_test = options.triangle_test;
@@ -73,6 +89,9 @@ struct Wide<'a, G> {
     geometry: &'a G,
     tree: &'a Bvh2,
     plan: &'a Plan,
+    work: Work<'a>,
+    /// How many cache lines all of it has.
+    lines: usize,
 }
 
 impl<G: Geometry> Wide<'_, G> {
@@ -93,6 +112,10 @@ impl<G: Geometry> Wide<'_, G> {
     ) -> usize {
         let Scratch { primitives, corners } = scratch;
         let is_large = below.len() > PARALLEL_LINES;
+        if is_large && self.work.check().is_err() {
+            place.abandon();
+            return 0;
+        }
         let children = self.plan.children(self.tree, number);
         let leaves = children.numbers().filter(|&child| self.plan.is_leaf(child));
         // All their corners before anything is made of them: they lie all over the memory, and the processor waits for many at a time.
@@ -126,8 +149,14 @@ impl<G: Geometry> Wide<'_, G> {
         });
         let deepest = match is_large {
             true => {
-                let fill = |(number, place, below)| {
-                    self.fill_below(number, place, below, &mut Scratch::default())
+                let fill = |(number, place, below): (usize, Part<'_>, Part<'_>)| {
+                    let lines = below.len();
+                    let depth = self.fill_below(number, place, below, &mut Scratch::default());
+                    if lines <= PARALLEL_LINES {
+                        // If the build is stopped, the next large node sees it.
+                        let _ = self.work.part(lines, self.lines).done();
+                    }
+                    depth
                 };
                 parallel::map_tasks(tasks.collect(), fill).into_iter().max()
             }

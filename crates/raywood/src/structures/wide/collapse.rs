@@ -3,6 +3,7 @@
 
 use super::node::{WIDTH, WideNode};
 use crate::Bvh2;
+use crate::build::{Cancelled, Work};
 use crate::geometry::{LANES, TriangleBlock};
 use crate::parallel::join_if;
 
@@ -48,14 +49,26 @@ struct Trees {
     primitives: u32,
 }
 
+impl Trees {
+    /// Of a subtree that is a leaf, or not looked at.
+    fn one(cost: f32, primitives: u32) -> Self {
+        let mut costs = [f32::INFINITY; WIDTH];
+        costs[0] = cost;
+        Self { costs, lines: [LEAF_LINES as u32; WIDTH], most: 1, primitives }
+    }
+}
+
 impl Plan {
     /// Finds what costs least. O(nodes), in parallel.
-    pub(super) fn new(tree: &Bvh2) -> Self {
-        let mut choices = vec![Choice::NONE; tree.nodes().len()];
+    pub(super) fn new(tree: &Bvh2, work: Work<'_>) -> Result<Self, Cancelled> {
+        let [making_room, searching] = work.shares([1.0, 10.0]);
+        let mut choices = making_room.copies(Choice::NONE, tree.nodes().len())?;
         if let Some((root, below)) = choices.split_first_mut() {
-            Search { tree, root_area: tree.bounds().half_area() }.best(0, root, below);
+            let root_area = tree.bounds().half_area();
+            Search { tree, root_area, work: searching }.best(0, root, below);
         }
-        Self { choices }
+        work.check()?;
+        Ok(Self { choices })
     }
 
     /// Whether the node of the binary tree becomes a leaf, given that it becomes one tree.
@@ -115,9 +128,21 @@ impl Children {
 struct Search<'a> {
     tree: &'a Bvh2,
     root_area: f64,
+    work: Work<'a>,
 }
 
 impl Search<'_> {
+    /// The same of a child of a large node; if it is not large itself, it is reported.
+    fn best_of_large(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Trees {
+        let nodes = 1 + below.len();
+        let best = self.best(number, choice, below);
+        if nodes <= PARALLEL_NODES {
+            // If the build is stopped, the next large node sees it.
+            let _ = self.work.part(nodes, self.tree.nodes().len()).done();
+        }
+        best
+    }
+
     /// Finds what is best for a node and all nodes below it, whose choices lie side by side.
     fn best(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Trees {
         let node = &self.tree.nodes()[number];
@@ -126,18 +151,18 @@ impl Search<'_> {
             true => (node.bounds().half_area() / self.root_area) as f32,
             false => 1.0,
         };
-        let mut costs = [f32::INFINITY; WIDTH];
-        let mut lines = [LEAF_LINES as u32; WIDTH];
         if node.is_leaf() {
-            costs[0] = area * LEAF_COST;
             choice.trees[0] = 1;
-            return Trees { costs, lines, most: 1, primitives: node.count() };
+            return Trees::one(area * LEAF_COST, node.count());
         }
 
         // The nodes of a tree lie depth first, pair by pair: below the pair first what is below its left node.
         let first = node.left_first() as usize;
         let (pair, below) = below.split_at_mut(2);
         let parallel = below.len() > PARALLEL_NODES;
+        if parallel && self.work.check().is_err() {
+            return Trees::one(0.0, 0);
+        }
         let right_node = &self.tree.nodes()[first + 1];
         let below_left = match right_node.is_leaf() {
             true => below.len(),
@@ -145,13 +170,18 @@ impl Search<'_> {
         };
         let (below_left, below_right) = below.split_at_mut(below_left);
         let [left, right] = pair else { unreachable!("two children") };
-        let (left, right) = join_if(
-            parallel,
-            || self.best(first, left, below_left),
-            || self.best(first + 1, right, below_right),
-        );
+        let (left, right) = match parallel {
+            true => join_if(
+                true,
+                || self.best_of_large(first, left, below_left),
+                || self.best_of_large(first + 1, right, below_right),
+            ),
+            false => (self.best(first, left, below_left), self.best(first + 1, right, below_right)),
+        };
         let primitives = left.primitives.saturating_add(right.primitives);
 
+        let mut costs = [f32::INFINITY; WIDTH];
+        let mut lines = [LEAF_LINES as u32; WIDTH];
         // Divide so many trees among both children in the best way. All numbers of trees to the right at once: what a child cannot be divided into costs infinitely
         // much, and more than sixteen trees are not looked at.
         let most = (left.most + right.most).min(WIDTH);

@@ -27,6 +27,7 @@ pub(crate) mod winding;
 use std::ops::ControlFlow;
 
 use super::AccelerationStructure;
+use crate::build::{Work, watched};
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, SimdLevel, dispatch_on};
 use crate::{
@@ -75,7 +76,29 @@ impl WideBvh {
     ///
     /// Too many primitives, or one whose box is empty or not finite.
     pub fn build<G: Geometry>(geometry: &G, options: &BuildOptions) -> Result<Self, BuildError> {
-        build::build(geometry, options)
+        build::build(geometry, options, Work::UNWATCHED)
+    }
+
+    /// As [`build`](Self::build), watched: see [`Bvh::build_watched`](crate::Bvh::build_watched).
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](Self::build), and [`BuildError::Cancelled`].
+    pub fn build_watched<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        watched(watcher, |work| build::build(geometry, options, work))
+    }
+
+    /// Builds the tree as a part of some work.
+    pub(crate) fn build_in<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        build::build(geometry, options, work)
     }
 
     /// The box around everything; empty if there is nothing.
