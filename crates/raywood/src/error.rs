@@ -22,6 +22,13 @@ pub enum BuildError {
     },
     /// Who watched the build asked to stop.
     Cancelled,
+    /// The build may take more memory than [`BuildOptions::memory_limit`](crate::BuildOptions::memory_limit).
+    MemoryLimit {
+        /// How many bytes it may take: see [`BuildMemory`](crate::BuildMemory).
+        needed: usize,
+        /// How many it is allowed.
+        limit: usize,
+    },
 }
 
 impl BuildError {
@@ -45,6 +52,12 @@ impl fmt::Display for BuildError {
                 min.to_array(),
                 max.to_array()
             ),
+            Self::MemoryLimit { needed, limit } => {
+                write!(
+                    f,
+                    "the build may take {needed} bytes of memory, more than the {limit} that it is allowed"
+                )
+            }
             Self::Cancelled => f.write_str("the build was cancelled"),
         }
     }

@@ -37,7 +37,7 @@
 //! - Watertight: no ray slips between two triangles that share an edge or vertex.
 //! - No input panics, hangs or gives a hit that is not there: meshes with NaN or infinite vertices are refused, rays with NaN miss,
 //!   empty meshes are legal.
-//! - A build can be [watched](Bvh::build_watched) and stopped.
+//! - A build can be [watched](Bvh::build_watched) and stopped, and its [memory](BuildMemory) is known before it begins.
 //! - Trees and answers do not depend on the number of threads. Work runs in the caller's rayon pool (feature `rayon`, on by
 //!   default) or on the calling thread.
 
@@ -62,7 +62,7 @@ mod validate;
 mod vec3;
 
 pub use aabb::Aabb;
-pub use build::{BuildOptions, BuildPreset, Builder, TriangleTest};
+pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use error::BuildError;
 pub use geometry::{

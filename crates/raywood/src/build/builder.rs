@@ -11,8 +11,8 @@ use super::reinsertion;
 use super::sah_binned::BinnedSah;
 use super::sah_sweep::SweepSah;
 use super::spatial;
-use super::{Work, watched};
-use crate::{BuildError, BuildOptions, Bvh2, Geometry};
+use super::{BuildMemory, Work, watched};
+use crate::{BuildError, BuildOptions, Bvh2, Geometry, StructureKind};
 
 /// How a binary tree is built: the same kind of tree, of different quality.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -70,6 +70,7 @@ impl Bvh2 {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(builder.structure(), geometry.len(), options)?;
         let [building, improving] = work.shares([builder.cost(), reinsertion::cost(options)]);
         let tree = match builder {
             Builder::Midpoint => driver::build(geometry, &Midpoint::new(options), building)?,
@@ -108,6 +109,18 @@ impl Bvh2 {
 }
 
 impl Builder {
+    /// The structure that it makes.
+    fn structure(self) -> StructureKind {
+        match self {
+            Self::Midpoint => StructureKind::BvhMidpoint,
+            Self::Median => StructureKind::BvhMedian,
+            Self::SahSweep => StructureKind::BvhSahSweep,
+            Self::SahBinned => StructureKind::BvhSahBinned,
+            Self::Lbvh => StructureKind::BvhLbvh,
+            Self::Hlbvh => StructureKind::BvhHlbvh,
+        }
+    }
+
     /// About how long it takes, in the units of [`Bvh2::cost_for_wide`].
     fn cost(self) -> f64 {
         match self {

@@ -6,6 +6,7 @@ pub(crate) mod driver;
 mod hlbvh;
 mod lbvh;
 mod median;
+mod memory;
 mod midpoint;
 mod morton;
 mod options;
@@ -22,6 +23,7 @@ mod spatial;
 mod work;
 
 pub use builder::Builder;
+pub use memory::BuildMemory;
 pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;
 pub use preset::BuildPreset;

@@ -45,6 +45,9 @@ pub struct BuildOptions {
     pub kd_empty_bonus: f32,
     /// How rays are tested against triangles by [`WideBvh`](crate::WideBvh). All other structures are always watertight.
     pub triangle_test: TriangleTest,
+    /// The most memory that a build may take, in bytes, what it holds meanwhile counted but not the geometry. One that may take more by [`BuildMemory`](crate::BuildMemory) ends
+    /// with [`BuildError::MemoryLimit`](crate::BuildError::MemoryLimit) before it begins. `None` for as much as there is.
+    pub memory_limit: Option<usize>,
 }
 
 /// How rays are tested against triangles.
@@ -75,6 +78,7 @@ impl Default for BuildOptions {
             octree_max_depth: crate::structures::octree::MAX_LEVELS,
             kd_empty_bonus: 0.2,
             triangle_test: TriangleTest::Watertight,
+            memory_limit: None,
         }
     }
 }
@@ -108,6 +112,7 @@ impl BuildOptions {
             octree_max_depth: self.octree_max_depth.clamp(1, crate::structures::octree::MAX_LEVELS),
             kd_empty_bonus: share(self.kd_empty_bonus),
             triangle_test: self.triangle_test,
+            memory_limit: self.memory_limit,
         }
     }
 

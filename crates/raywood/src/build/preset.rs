@@ -4,7 +4,7 @@ use super::{BuildOptions, Builder};
 
 /// A point of the trade between the time to build a bounding volume hierarchy and the time to trace through it. What each chooses stands in
 /// [`options`](Self::options); grids, octree and kD-tree are the same by all.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum BuildPreset {
     /// The wide tree along a space-filling curve: for scenes that change with every picture.

@@ -1,7 +1,7 @@
 //! No structure at all: every ray tests every primitive. The reference that the others are held against.
 
-use super::AccelerationStructure;
-use crate::build::{PackedAabb, Work, driver};
+use super::{AccelerationStructure, StructureKind};
+use crate::build::{BuildMemory, PackedAabb, Work, driver};
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, NodeView};
 use crate::{PreparedRay, Probe, Ray, ValidationError};
@@ -26,9 +26,10 @@ impl BruteForce {
     /// Builds it as a part of some work.
     pub(crate) fn build_in<G: Geometry>(
         geometry: &G,
-        _: &BuildOptions,
+        options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(StructureKind::BruteForce, geometry.len(), options)?;
         let boxes = driver::primitive_bounds(geometry, work)?;
         let bounds = boxes.iter().copied().fold(PackedAabb::EMPTY, PackedAabb::union).into();
         Ok(Self { primitives: boxes.len() as u32, bounds })

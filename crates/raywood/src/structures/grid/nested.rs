@@ -2,8 +2,8 @@
 
 use super::build::Shape;
 use super::pool::GridPool;
-use crate::build::Work;
-use crate::structures::AccelerationStructure;
+use crate::build::{BuildMemory, Work};
+use crate::structures::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
 
@@ -38,6 +38,7 @@ impl NestedGrid {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(StructureKind::NestedGrid, geometry.len(), options)?;
         let density = 0.25 * f64::from(options.clamped().grid_density);
         let [outermost, inner @ ..] = work.shares([1.0; LEVELS]);
         let mut grids = GridPool::build(geometry, &Shape { density, duplication: 4 }, outermost)?;

@@ -2,8 +2,8 @@
 
 use super::build::Shape;
 use super::pool::GridPool;
-use crate::build::Work;
-use crate::structures::AccelerationStructure;
+use crate::build::{BuildMemory, Work};
+use crate::structures::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
 
@@ -39,6 +39,7 @@ impl UniformGrid {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(StructureKind::UniformGrid, geometry.len(), options)?;
         let density = f64::from(options.clamped().grid_density);
         Ok(Self(GridPool::build(geometry, &Shape { density, duplication: DUPLICATION }, work)?))
     }

@@ -8,8 +8,8 @@ mod traverse;
 
 pub use node::KdNode;
 
-use super::AccelerationStructure;
-use crate::build::Work;
+use super::{AccelerationStructure, StructureKind};
+use crate::build::{BuildMemory, Work};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, Probe, Ray};
 use crate::{NodeView, ValidationError};
 use node::Content;
@@ -46,6 +46,7 @@ impl KdTree {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(StructureKind::KdTree, geometry.len(), options)?;
         build::build(geometry, options, work)
     }
 

@@ -5,8 +5,8 @@ mod cell;
 mod check;
 mod traverse;
 
-use super::AccelerationStructure;
-use crate::build::Work;
+use super::{AccelerationStructure, StructureKind};
+use crate::build::{BuildMemory, Work};
 use crate::traverse::mailbox::Mailbox;
 use crate::traverse::nearest::{Nearest, blocks};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, Probe, Ray};
@@ -98,6 +98,7 @@ impl Octree {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
+        BuildMemory::check(StructureKind::Octree, geometry.len(), options)?;
         build::build(geometry, &options.clamped(), work)
     }
 

@@ -4,9 +4,10 @@ use super::WideBvh;
 use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
 use super::node::{Reference, WIDTH, WideNode};
 use super::parts::Parts;
-use crate::build::Work;
+use crate::build::{BuildMemory, Work};
 use crate::geometry::TriangleBlock;
 use crate::simd::{Arena, Part};
+use crate::structures::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
 
 /// How often the binary tree is improved by reinsertion unless the options say it.
@@ -21,11 +22,12 @@ const FILL_COST: f64 = 25.0;
 /// Subtrees of more lines are filled in parallel.
 const PARALLEL_LINES: usize = 1 << 13;
 
-/// With which options the binary tree is built.
-fn binary_options(options: &BuildOptions) -> BuildOptions {
+/// With which options the binary tree is built. Nobody limits its memory any more.
+pub(crate) fn binary_options(options: &BuildOptions) -> BuildOptions {
     BuildOptions {
         max_leaf_size: options.max_leaf_size.min(options.clamped().wide_leaf_size),
         reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
+        memory_limit: None,
         ..options.clone()
     }
 }
@@ -36,6 +38,8 @@ pub(super) fn build<G: Geometry>(
     options: &BuildOptions,
     work: Work<'_>,
 ) -> Result<WideBvh, BuildError> {
+    BuildMemory::check(StructureKind::BvhWide, geometry.len(), options)?;
+    let allowed = options;
     let options = binary_options(options);
     let binary = Bvh2::cost_for_wide(&options);
     let [building, planning, filling] = work.shares([binary, PLAN_COST, FILL_COST]);
@@ -50,6 +54,8 @@ pub(super) fn build<G: Geometry>(
     if lines > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
+    // Now it is known how large the tree becomes: scenes can be made in which it is larger than was to be expected.
+    BuildMemory::check_lists(tree.bytes() + plan.bytes() + 64 * lines, geometry.len(), allowed)?;
     let wide = Wide { geometry, tree: &tree, plan: &plan, work: filling, lines };
     let filled = Arena::filled(lines, |all| match tree.nodes() {
         [] => (Reference::NOTHING, 0),

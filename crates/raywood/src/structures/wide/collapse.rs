@@ -71,6 +71,11 @@ impl Plan {
         Ok(Self { choices })
     }
 
+    /// How much memory it takes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.choices[..])
+    }
+
     /// Whether the node of the binary tree becomes a leaf, given that it becomes one tree.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
         self.choices[number].trees[0] == 1

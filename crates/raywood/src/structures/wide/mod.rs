@@ -35,6 +35,7 @@ use crate::{
     ValidationError,
 };
 use crate::{HitColumnsMut, Vec3};
+pub(crate) use build::binary_options;
 pub(crate) use chosen::Chooser;
 pub(crate) use crossings::HitVisitor;
 use node::Reference;
