@@ -93,6 +93,24 @@ pub(crate) fn build_preset(text: &str) -> Result<BuildPreset, String> {
     })
 }
 
+/// A number of bytes, perhaps with K, M, G or T for powers of 1024: `500M`.
+pub(crate) fn memory_size(text: &str) -> Result<usize, String> {
+    let units = ["K", "M", "G", "T"];
+    let upper = text.to_ascii_uppercase();
+    let (number, unit) = (1..)
+        .zip(units)
+        .find_map(|(power, unit)| Some((upper.strip_suffix(unit)?, 1024f64.powi(power))))
+        .unwrap_or((&upper, 1.0));
+    let is_number = number.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    match number.parse::<f64>() {
+        Ok(number) if is_number => Ok((number * unit) as usize),
+        _ => {
+            Err("expected a number of bytes, or one with K, M, G or T, as in 500M or 1.5G"
+                .to_owned())
+        }
+    }
+}
+
 /// The name of a level of vector instructions.
 pub(crate) fn simd_level(text: &str) -> Result<SimdLevel, String> {
     SimdLevel::from_name(text).ok_or_else(|| {
@@ -157,6 +175,14 @@ mod tests {
         }
         let said = build_preset("ultra").expect_err("no such preset");
         assert_eq!(said, "expected one of fastest, fast, balanced, high, best");
+        assert_eq!(memory_size("0"), Ok(0));
+        assert_eq!(memory_size("123456"), Ok(123_456));
+        assert_eq!(memory_size("500M"), Ok(500 << 20));
+        assert_eq!((memory_size("2k"), memory_size("1.5G")), (Ok(2048), Ok(3 << 29)));
+        for bad in ["", "M", "-1", "1e9", "inf", "nan", "2GB", "1 G", "0x10"] {
+            let said = memory_size(bad).expect_err("no size");
+            assert!(said.starts_with("expected a number of bytes"), "{bad}: {said}");
+        }
         assert_eq!(heat_quantity("tests"), Ok(HeatQuantity::Tests));
         let said = heat_quantity("time").expect_err("no such quantity");
         assert_eq!(said, "expected one of nodes, boxes, primitives, tests");

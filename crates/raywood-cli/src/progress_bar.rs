@@ -1,6 +1,7 @@
 //! What long work shows on a terminal: what it is doing, how far it is, how long it will take. Silent elsewhere.
 
 use std::io::{IsTerminal, stderr};
+use std::ops::ControlFlow;
 use std::thread;
 use std::time::Duration;
 
@@ -24,6 +25,22 @@ pub(crate) fn during_steps<T>(steps: impl FnOnce(&mut (dyn FnMut(&str) + Send)) 
     line.enable_steady_tick(INTERVAL);
     let result = steps(&mut |name| line.set_message(name.to_owned()));
     line.finish_and_clear();
+    result
+}
+
+/// In how many steps the bar of a build grows.
+const BUILD_STEPS: u64 = 1000;
+
+/// Runs a build while a bar shows how far it is, which the build tells.
+pub(crate) fn during_build<T>(
+    build: impl FnOnce(&(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> T,
+) -> T {
+    let bar = new_line("building [{wide_bar}] {percent}% {eta} left", Some(BUILD_STEPS));
+    let result = build(&|done| {
+        bar.set_position((done * BUILD_STEPS as f64) as u64);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
     result
 }
 

@@ -364,3 +364,50 @@ fn ctrl_c_ends_it_within_a_second_and_leaves_nothing() {
     }
     assert_eq!(fs::read(folder.join("old.png")).expect("a file"), b"an old picture");
 }
+
+#[test]
+fn a_build_beyond_the_memory_limit_is_refused_with_advice() {
+    let folder = folder("memory");
+    let scene = "builtin:terrain?n=100";
+    let refused = |arguments: &str, advice: &str| {
+        let output = run(&folder, arguments);
+        assert_eq!(code(&output), 2, "{arguments}");
+        assert_eq!(stdout(&output), "", "{arguments}");
+        let said = stderr(&output);
+        assert!(
+            said.contains("--memory-limit 100K; expected ") && said.contains(" of memory"),
+            "{said}"
+        );
+        assert!(said.trim_end().ends_with(advice), "{said}");
+    };
+    let limited = format!("{scene} --memory-limit 100k");
+    refused(&format!("render {limited} --size 8x8 -n 1"), "expected a higher limit");
+    refused(&format!("info {limited} --structure kd-tree"), "expected a higher limit");
+    refused(
+        &format!("compare {limited} --structures bvh-wide --rays 10 --rounds 1"),
+        "expected a higher limit",
+    );
+    refused(&format!("bench {limited} --rays 10 --rounds 1"), "expected a higher limit");
+    fs::write(folder.join("points.csv"), "x,y,z\n0,0,0\n").expect("a file");
+    refused(&format!("query {limited} --points points.csv -o out.csv"), "expected a higher limit");
+    assert_eq!(files(&folder), ["points.csv"]);
+
+    // Between what the fastest build needs and what the best does.
+    let limited = format!("{scene} --memory-limit 3500K");
+    let output = run(&folder, &format!("info {limited} --build best"));
+    let said = stderr(&output);
+    assert_eq!(code(&output), 2, "{}", stdout(&output));
+    let start = "raywood: error: building bvh-wide may take ";
+    assert!(
+        said.starts_with(start) && said.contains("K of memory, above --memory-limit 3500K"),
+        "{said}"
+    );
+    assert!(said.trim_end().ends_with("; expected a higher limit or --build fastest"), "{said}");
+    assert_eq!(code(&run(&folder, &format!("info {limited} --build fastest"))), 0);
+    assert_eq!(code(&run(&folder, &format!("info {scene} --build best --memory-limit 1G"))), 0);
+
+    let output = run(&folder, "info builtin:whitted --memory-limit lots");
+    assert_eq!(code(&output), 2);
+    let said = stderr(&output);
+    assert!(said.contains("expected a number of bytes, or one with K, M, G or T"), "{said}");
+}

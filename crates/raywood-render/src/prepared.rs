@@ -1,5 +1,7 @@
 //! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
 
+use std::ops::ControlFlow;
+
 use raywood::{Aabb, BuildError, BuildOptions, Geometry, Joined, SimdLevel, Spheres};
 use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
@@ -40,6 +42,22 @@ impl<'a> PreparedScene<'a> {
     /// The structure cannot be built.
     pub fn with_structure(scene: &'a Scene, kind: StructureKind) -> Result<Self, BuildError> {
         let structure = Structure::build(kind, Self::surfaces(scene), &BuildOptions::default())?;
+        Ok(Self::from_structure(scene, structure))
+    }
+
+    /// As [`with_structure`](Self::with_structure), built as the options say, while `watcher` is told how far the build is and may stop it: see
+    /// [`Structure::build_watched`].
+    ///
+    /// # Errors
+    ///
+    /// The structure cannot be built, or the watcher stopped it.
+    pub fn build_watched(
+        scene: &'a Scene,
+        kind: StructureKind,
+        options: &BuildOptions,
+        watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
+    ) -> Result<Self, BuildError> {
+        let structure = Structure::build_watched(kind, Self::surfaces(scene), options, watcher)?;
         Ok(Self::from_structure(scene, structure))
     }
 

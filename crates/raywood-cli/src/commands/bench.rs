@@ -99,9 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepare = || args.build.prepare(&scene, kind);
-    let mut prepared = during_step("building the structure", || pool.install(prepare))
-        .map_err(Failure::bad_input)?;
+    let mut prepared = args.build.prepare(&scene, kind, &pool)?;
     let build = (started.elapsed().as_secs_f64(), pool.current_num_threads());
 
     let choose = || args.view.view(&prepared, width as f32 / height as f32);

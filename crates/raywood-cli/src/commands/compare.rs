@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use raywood::StructureKind;
+use raywood::{BuildError, StructureKind};
 use raywood_lab::{CompareError, CompareOptions, Comparison, RayKind, SceneStructure, compare};
 use raywood_render::{HeatMap, HeatQuantity, PreparedScene, Progress, RenderOptions, heat_map};
 use raywood_scene::{Camera, Scene};
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut options = CompareOptions {
         rays: args.rays as usize,
         rounds: args.rounds as usize,
-        build: args.build.preset.options(),
+        build: args.build.options(),
         ..CompareOptions::default()
     };
     if !args.structures.is_empty() {
@@ -100,14 +100,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let Loaded { mut scene, .. } = loaded;
     args.view.orient(&mut scene);
 
-    let prepared = during_step("preparing", || pool.install(|| PreparedScene::new(&scene)))
-        .map_err(Failure::bad_input)?;
+    let prepared = args.build.prepare(&scene, StructureKind::default(), &pool)?;
     let choose = || args.view.view(&prepared, options.aspect);
     let view = during_step("choosing a view", || pool.install(choose))?;
     let comparison =
         during_steps(|step| pool.install(|| compare(&prepared, &view, &options, step)));
     let (comparison, structures) = comparison.map_err(|error| match error {
         CompareError::Mismatch(_) => Failure::while_running(error),
+        CompareError::Build(kind, error @ BuildError::MemoryLimit { .. }) => {
+            args.build.failure(&error, kind, &scene)
+        }
         error => Failure::bad_input(error),
     })?;
     let compared = Compared { scene: &scene.name, comparison: &comparison };

@@ -51,9 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let kind = args.structure.unwrap_or_default();
-    let prepare = || args.build.prepare(&loaded.scene, kind);
-    let prepared = during_step("building the structure", || pool.install(prepare))
-        .map_err(Failure::bad_input)?;
+    let prepared = args.build.prepare(&loaded.scene, kind, &pool)?;
     let stats = prepared.structure().stats();
     let level = prepared.structure().simd_level();
     if args.json {

@@ -4,9 +4,6 @@ use std::io::{self, BufWriter, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use raywood::Bvh;
-use raywood_render::PreparedScene;
-
 use super::thread_pool;
 use crate::build_args::BuildArgs;
 use crate::failure::Failure;
@@ -204,11 +201,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let scene = &loaded.scene;
-    let surfaces = PreparedScene::surfaces(scene);
-    let options = args.build.preset.options();
-    let build = || Bvh::build_with(surfaces, &options);
-    let tree = during_step("building the structure", || pool.install(build));
-    let tree = tree.map_err(Failure::bad_input)?;
+    let tree = args.build.tree(scene, &pool)?;
 
     let max_distance = args.max_distance.unwrap_or(f32::INFINITY);
     let max_hits = args.max_hits.map(|most| most as usize);

@@ -145,9 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepare = || args.build.prepare(&scene, kind);
-    let prepared = during_step("building the structure", || pool.install(prepare))
-        .map_err(Failure::bad_input)?;
+    let prepared = args.build.prepare(&scene, kind, &pool)?;
     let build = started.elapsed();
 
     let started = Instant::now();
