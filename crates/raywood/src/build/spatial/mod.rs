@@ -130,6 +130,9 @@ impl<G: Geometry> Builder<'_, G> {
         let mut tree = Subtree::default();
         tree.nodes.push(Node::leaf(bounds.into(), 0, 0));
         self.subdivide(set, (0, depth), &mut tree);
+        // Many of them wait to be put together.
+        tree.nodes.shrink_to_fit();
+        tree.numbers.shrink_to_fit();
         work.done()?;
         Ok(tree)
     }
@@ -247,6 +250,7 @@ impl Subtree {
         nodes.extend(left.nodes[1..].iter().map(from_left));
         nodes.extend(right.nodes[1..].iter().map(from_right));
         let mut numbers = left.numbers;
+        numbers.reserve_exact(right.numbers.len());
         numbers.extend(right.numbers);
         Self { nodes, numbers }
     }

@@ -81,8 +81,13 @@ pub(super) fn partition<G: Geometry>(
     plane: Plane,
     work: Work<'_>,
 ) -> Option<(Split, usize)> {
+    let is_crossed = |reference: &&Primitive| plane.side_of(reference.bounds()) == Side::Both;
+    let crossed = references[..count].iter().filter(is_crossed).count();
+    if crossed > references.len() - count {
+        return None;
+    }
     let (mut left, mut right) = (Half::NOTHING, Half::NOTHING);
-    let mut crossing = Vec::new();
+    let mut crossing = Vec::with_capacity(crossed);
     for (number, reference) in references[..count].iter().enumerate() {
         if number % PIECE == 0 {
             work.ask().ok()?;
@@ -105,7 +110,7 @@ pub(super) fn partition<G: Geometry>(
             }
         }
     }
-    if crossing.len() > references.len() - count || left.count == 0 || right.count == 0 {
+    if left.count == 0 || right.count == 0 {
         return None;
     }
 
