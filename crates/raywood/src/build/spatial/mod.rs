@@ -2,8 +2,8 @@
 //! in Bounding Volume Hierarchies", HPG 2009.
 //!
 //! A large triangle among small ones makes the boxes around it large, whatever set it is put into. Where the boxes of the best two sets overlap, a plane that cuts
-//! space, and the triangles that it crosses, may cost less. References live in one array with room for more of them, which goes along with the sets: so nothing
-//! is allocated on the way down, and how much is cut does not depend on threads.
+//! space, and the triangles that it crosses, may cost less. References live in one array with room for more of them, which goes along with the sets: so sets are
+//! divided in place, and how much is cut does not depend on threads.
 
 mod bins;
 mod cut;
@@ -12,7 +12,7 @@ mod partition;
 
 use super::driver::{self, Around, PARALLEL_SUBTREES, Set, Split, Splitter};
 use super::sah_binned::BinnedSah;
-use super::{Builder as BinaryBuilder, Cancelled, PackedAabb, Primitive, Work};
+use super::{Builder, Cancelled, PackedAabb, Primitive, Work};
 use crate::structures::{Bvh2, Node};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3, parallel};
 use bins::best_cut;
@@ -27,7 +27,7 @@ pub(super) const COST: f64 = 1000.0;
 
 /// Whether the options ask for a wide tree in which triangles are cut.
 pub(super) fn is_asked_for(options: &BuildOptions) -> bool {
-    options.wide_builder == BinaryBuilder::SahBinned && options.clamped().spatial_splits > 0.0
+    options.wide_builder == Builder::SahBinned && options.clamped().spatial_splits > 0.0
 }
 
 /// Builds the binary tree, in parallel. A primitive may lie in several leaves, whose boxes are around parts of it. The same for any number of threads.
@@ -54,7 +54,7 @@ pub(super) fn build<G: Geometry>(
     let least_overlap = LEAST_OVERLAP * around.bounds.half_area();
     let margin = margin::margin(&around.bounds.into());
     let objects = BinnedSah::new(&options);
-    let builder = Builder { geometry, least_overlap, margin, objects };
+    let builder = SpatialBuilder { geometry, least_overlap, margin, objects };
     let set = References { references: &mut references, count, around };
     let mut tree = builder.grow(set, 1, building)?;
     fit(&mut tree.nodes);
@@ -90,7 +90,8 @@ struct Subtree {
     numbers: Vec<u32>,
 }
 
-struct Builder<'a, G> {
+/// What all sets are divided by.
+struct SpatialBuilder<'a, G> {
     geometry: &'a G,
     /// See [`LEAST_OVERLAP`]; half an area.
     least_overlap: f64,
@@ -99,7 +100,7 @@ struct Builder<'a, G> {
     objects: BinnedSah,
 }
 
-impl<G: Geometry> Builder<'_, G> {
+impl<G: Geometry> SpatialBuilder<'_, G> {
     /// Builds a subtree whose root lies on level `depth`, from 1; in parallel if it is large.
     fn grow(
         &self,
