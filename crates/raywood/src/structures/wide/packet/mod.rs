@@ -103,9 +103,6 @@ const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 /// trace these one by one.
 const MOST_WORK: f32 = 8.0;
 
-/// The same where any hit will do, which rays find sooner one by one.
-const MOST_WORK_FOR_ANY: f32 = 4.0;
-
 /// Sixteen bits.
 const ALL: u32 = 0xffff;
 
@@ -253,7 +250,7 @@ impl Packet {
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
         for (most, members) in self.most_work.iter_mut().zip(&self.members) {
-            *most = most_work::<K>(members.count_ones());
+            *most = most_work(members.count_ones());
         }
         let near = if K::PARALLEL { f32::NEG_INFINITY } else { 0.0 };
         stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near };
@@ -418,7 +415,7 @@ impl Packet {
             self.groups.least[group] = nearest.least();
             if K::ANY {
                 let left = nearest.less(simd.splat16(f32::INFINITY));
-                self.most_work[group] = most_work::<K>(left.count_ones());
+                self.most_work[group] = most_work(left.count_ones());
             }
         }
         self.groups.look_again::<S, K>(simd);
@@ -438,7 +435,6 @@ impl Packet {
 
 /// Against how many triangles a group may be tested of which so many rays have not found what they look for.
 #[inline(always)]
-fn most_work<K: Kind>(rays: u32) -> f32 {
-    let each = if K::ANY { MOST_WORK_FOR_ANY } else { MOST_WORK };
-    each * rays as f32
+fn most_work(rays: u32) -> f32 {
+    MOST_WORK * rays as f32
 }
