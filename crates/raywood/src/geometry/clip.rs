@@ -94,7 +94,7 @@ impl Polygon {
 }
 
 /// The largest single-precision number not above `x`.
-fn round_down(x: f64) -> f32 {
+pub(crate) fn round_down(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }

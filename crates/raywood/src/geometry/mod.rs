@@ -16,6 +16,7 @@ mod triangle_pair;
 mod watertight;
 
 pub(crate) use block_distances::Frame;
+pub(crate) use clip::round_down;
 pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
 pub(crate) use crossing::{cross_triangle, meets_front};

@@ -1,6 +1,7 @@
 //! Cutting references at a plane: a reference is a primitive with a box around the part of it that is meant.
 
 use super::super::{PackedAabb, Primitive};
+use crate::geometry::round_down;
 use crate::{Aabb, Geometry, Vec3};
 
 /// The error of a point between two corners per unit of their largest coordinate: four roundings in double precision, where three are made.
@@ -96,12 +97,6 @@ pub(super) fn cut<G: Geometry>(
 ) -> Option<[PackedAabb; 2]> {
     let corners = geometry.triangle(reference.number())?;
     Some(plane.cut(corners, reference.bounds()))
-}
-
-/// The largest single-precision number not above `x`.
-fn round_down(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }
 
 #[cfg(test)]
