@@ -544,9 +544,14 @@ fn rays_that_are_known_to_start_beside_surfaces_are_blocked_as_others() {
             for level in SimdLevel::available() {
                 structure.set_simd_level(level);
                 let mut blocked = vec![false; points.len()];
-                let from = (&points[..], &primitives[..]);
                 let end = Ray::SHORT_END;
-                structure.occluded_from_surfaces_serial(light, end, from, &mut blocked);
+                structure.occluded_from_surfaces_serial(
+                    light,
+                    end,
+                    &points,
+                    &primitives,
+                    &mut blocked,
+                );
                 for (&point, blocked) in points.iter().zip(blocked) {
                     let ray = Ray::short_of(point, light);
                     assert_eq!(blocked, structure.occluded(&ray), "{}, {ray:?}", level.name());

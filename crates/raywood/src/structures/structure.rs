@@ -202,7 +202,8 @@ impl<G: Geometry> Structure<G> {
         &self,
         target: Vec3,
         end: f32,
-        (points, primitives): (&[Vec3], &[u32]),
+        points: &[Vec3],
+        primitives: &[u32],
         occluded: &mut [bool],
     ) {
         assert_eq!(points.len(), occluded.len(), "as many answers as points");

@@ -164,8 +164,9 @@ fn ask_whether_blocked(
 ) {
     match aim {
         Aim::Point(target) => {
-            let from = (origins, primitives);
-            scene.structure().occluded_from_surfaces_serial(target, Ray::SHORT_END, from, blocked);
+            let end = Ray::SHORT_END;
+            let structure = scene.structure();
+            structure.occluded_from_surfaces_serial(target, end, origins, primitives, blocked);
         }
         Aim::Direction(_) => {
             parallel.clear();
