@@ -56,7 +56,8 @@ pub(super) fn build<G: Geometry>(
     }
     // Now it is known how large the tree becomes: scenes can be made in which it is larger than was to be expected.
     BuildMemory::check_lists(tree.bytes() + plan.bytes() + 64 * lines, geometry.len(), allowed)?;
-    let wide = Wide { geometry, tree: &tree, plan: &plan, work: filling, lines };
+    let parts = Parts::of(&tree, geometry.len());
+    let wide = Wide { geometry, tree: &tree, plan: &plan, parts: &parts, work: filling, lines };
     let filled = Arena::filled(lines, |all| match tree.nodes() {
         [] => (Reference::NOTHING, 0),
         _ if is_node => (Reference::node(0), wide.fill(0, all)),
@@ -75,7 +76,7 @@ pub(super) fn build<G: Geometry>(
         primitives,
         triangle_test,
         reach,
-        parts: Parts::of(&tree, geometry.len()),
+        parts,
         depth,
         root,
         arena,
@@ -95,6 +96,7 @@ struct Wide<'a, G> {
     geometry: &'a G,
     tree: &'a Bvh2,
     plan: &'a Plan,
+    parts: &'a Parts,
     work: Work<'a>,
     /// How many cache lines all of it has.
     lines: usize,
@@ -201,7 +203,7 @@ impl<G: Geometry> Wide<'_, G> {
         let mut lane = 0;
         for (number, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
             // Of a cut triangle several parts may have come together.
-            if primitives[..number].contains(&primitive) {
+            if self.parts.contain(primitive) && primitives[..number].contains(&primitive) {
                 continue;
             }
             mixed |= triangle.is_none();
