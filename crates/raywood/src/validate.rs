@@ -51,6 +51,11 @@ pub enum ValidationError {
         /// The primitive.
         primitive: u32,
     },
+    /// A triangle was cut, and a point of it lies in none of its parts' boxes.
+    NotCovered {
+        /// The primitive.
+        primitive: u32,
+    },
     /// A cell does not refer to exactly the primitives that overlap it.
     WrongContent {
         /// The cell's node.
@@ -86,6 +91,9 @@ impl fmt::Display for ValidationError {
                     f,
                     "cell {node} does not refer to primitive {primitive}, which reaches into it"
                 )
+            }
+            Self::NotCovered { primitive } => {
+                write!(f, "the boxes of the parts of primitive {primitive} do not hold all of it")
             }
             Self::WrongContent { node } => {
                 write!(f, "node {node} does not hold exactly the primitives that overlap its cell")

@@ -81,7 +81,7 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
         (!cover(boxes, corners)).then_some(*primitive)
     };
     match parts.iter().filter_map(uncovered).min() {
-        Some(primitive) => Err(ValidationError::NotReferenced { node: 0, primitive }),
+        Some(primitive) => Err(ValidationError::NotCovered { primitive }),
         None => Ok(()),
     }
 }
