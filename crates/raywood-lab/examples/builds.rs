@@ -1,28 +1,16 @@
 //! Milliseconds per build of structures, for work on builders: `builds SCENE THREADS STRUCTURE[:PRESET]...`, the median and the least of nine rounds, and the quality of
 //! the trees.
 
+mod shared;
+
 use std::time::Instant;
 
-use raywood::{BuildPreset, Structure, StructureKind};
-use raywood_scene::{LoadOptions, builtin, load_file};
+use raywood::Structure;
+use shared::Builds;
 
 fn main() {
-    let mut args = std::env::args().skip(1);
-    let name = args.next().expect("scene");
-    let threads = args.next().and_then(|threads| threads.parse().ok()).expect("threads");
-    let builds: Vec<_> = args
-        .map(|build| {
-            let (kind, preset) = build.split_once(':').unwrap_or((&build, "balanced"));
-            let preset = BuildPreset::from_name(preset).expect("a preset");
-            (StructureKind::from_name(kind).expect("a structure"), preset)
-        })
-        .collect();
-    let scene = match name.strip_prefix("builtin:") {
-        Some(name) => builtin(name).expect("a scene"),
-        None => load_file(name.as_ref(), &LoadOptions::default()).expect("a scene"),
-    };
+    let Builds { scene, pool, builds } = Builds::from_args();
     let mesh = &scene.mesh.triangles;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
         for (kind, preset) in builds {
             let mut times = Vec::new();

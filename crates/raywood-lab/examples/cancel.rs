@@ -1,33 +1,21 @@
 //! How builds are watched: `cancel SCENE THREADS STRUCTURE[:PRESET]...` prints how far the share that is said to be done is from the share of the time, the longest time
 //! between two questions whether to go on, and how long a build takes to stop.
 
+mod shared;
+
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use raywood::{BuildError, BuildPreset, Structure, StructureKind};
-use raywood_scene::{LoadOptions, builtin, load_file};
+use raywood::{BuildError, Structure};
+use shared::Builds;
 
 /// At how many places of a build it is stopped.
 const PLACES: u32 = 40;
 
 fn main() {
-    let mut args = std::env::args().skip(1);
-    let name = args.next().expect("scene");
-    let threads = args.next().and_then(|threads| threads.parse().ok()).expect("threads");
-    let builds: Vec<_> = args
-        .map(|build| {
-            let (kind, preset) = build.split_once(':').unwrap_or((&build, "balanced"));
-            let preset = BuildPreset::from_name(preset).expect("a preset");
-            (StructureKind::from_name(kind).expect("a structure"), preset)
-        })
-        .collect();
-    let scene = match name.strip_prefix("builtin:") {
-        Some(name) => builtin(name).expect("a scene"),
-        None => load_file(name.as_ref(), &LoadOptions::default()).expect("a scene"),
-    };
+    let Builds { scene, pool, builds } = Builds::from_args();
     let mesh = &scene.mesh.triangles;
-    println!("{} triangles, {threads} threads", mesh.triangles().len());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    println!("{} triangles, {} threads", mesh.triangles().len(), pool.current_num_threads());
     pool.install(|| {
         for (kind, preset) in builds {
             let options = preset.options();
