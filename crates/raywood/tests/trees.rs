@@ -130,7 +130,7 @@ fn trees_along_a_curve_are_sound_whatever_codes_can_tell_apart() {
 
     for boxes in lists {
         let (n, boxes) = (boxes.len(), Boxes(boxes));
-        for builder in [Builder::Lbvh, Builder::Hlbvh] {
+        for builder in [Builder::Lbvh, Builder::Hlbvh, Builder::Ploc] {
             for max_leaf_size in [1, 8] {
                 let options = BuildOptions { max_leaf_size, ..Default::default() };
                 let tree = Bvh2::build_by(builder, &boxes, &options).expect("it builds");
@@ -213,7 +213,7 @@ fn the_same_tree_for_any_number_of_threads() {
         let options = BuildOptions::default();
         pool.install(|| Bvh2::build_by(builder, &mesh, &options).expect("it builds"))
     };
-    for builder in [Builder::SahBinned, Builder::Lbvh, Builder::Hlbvh] {
+    for builder in [Builder::SahBinned, Builder::Lbvh, Builder::Hlbvh, Builder::Ploc] {
         let one = build(builder, 1);
         for threads in [2, 3, 8] {
             assert!(build(builder, threads) == one, "{builder:?}: {threads} threads");

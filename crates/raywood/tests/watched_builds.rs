@@ -11,13 +11,14 @@ use raywood::{
 };
 use raywood_testkit::shapes;
 
-const BUILDERS: [Builder; 6] = [
+const BUILDERS: [Builder; 7] = [
     Builder::Midpoint,
     Builder::Median,
     Builder::SahSweep,
     Builder::SahBinned,
     Builder::Lbvh,
     Builder::Hlbvh,
+    Builder::Ploc,
 ];
 
 /// Large enough for several pieces of everything that is done in pieces.

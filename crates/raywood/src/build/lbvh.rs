@@ -1,7 +1,8 @@
 //! The linear BVH: primitives sorted along a space-filling curve, sets split where the curve turns. Lauterbach et al., "Fast BVH Construction on GPUs", Eurographics 2009;
 //! Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012. Where codes cannot tell primitives apart, they get codes of their own.
 
-use super::driver::{self, PARALLEL_SUBTREES, Subtree, must_halve};
+use super::curve::{key, sorted_keys};
+use super::driver::{PARALLEL_SUBTREES, Subtree, must_halve};
 use super::morton::{Morton, NUMBER_BITS, number, same_code};
 use super::radix_sort::sort_above;
 use super::{Cancelled, PackedAabb, Work};
@@ -23,28 +24,17 @@ pub(super) fn build_with_leaves<G: Geometry>(
     max_leaf_size: usize,
     work: Work<'_>,
 ) -> Result<Bvh2, BuildError> {
-    let [bounding, encoding, sorting, growing, copying] = work.shares([1.0, 2.0, 1.5, 5.0, 1.0]);
-    let around = driver::around_all(geometry, bounding)?;
-    let n = geometry.len();
+    let [ordering, growing, copying] = work.shares([4.5, 5.0, 1.0]);
+    let (mut keys, _) = sorted_keys(geometry, ordering)?;
+    let n = keys.len();
     if n == 0 {
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     }
-    let morton = Morton::new(&around.centers);
-    let key = |primitive: usize| key(geometry, &morton, primitive as u32);
-    let mut keys = parallel::map_watched(n, encoding, key)?;
-    sort_above(NUMBER_BITS, &mut keys, sorting)?;
-
     let builder = Lbvh { geometry, max_leaf_size };
     let set = Set { keys: &mut keys, first: 0, depth: 1, alike: false, work: growing };
     let nodes = builder.grow(set)?.into_nodes(copying)?;
     let indices = parallel::map_watched(n, work.without_progress(), |place| number(keys[place]))?;
     Ok(Bvh2::from_parts(nodes, indices))
-}
-
-/// The code of a primitive's centre, and its number.
-#[inline(always)]
-fn key<G: Geometry>(geometry: &G, morton: &Morton, primitive: u32) -> u64 {
-    morton.key(PackedAabb::from(geometry.bounds(primitive)).center(), primitive)
 }
 
 /// A node that is still to be made.

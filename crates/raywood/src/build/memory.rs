@@ -42,6 +42,12 @@ const NUMBER: f64 = 4.0;
 /// A place on the curve with the number of a primitive.
 const KEY: f64 = 8.0;
 
+/// A cluster of primitives: its box, what it is, and how many there are.
+const CLUSTER: f64 = 32.0;
+
+/// Two clusters that were merged.
+const MERGE: f64 = 36.0;
+
 /// A node of a binary tree.
 const NODE: f64 = size_of::<Node>() as f64;
 
@@ -70,6 +76,7 @@ impl BuildMemory {
             StructureKind::BvhSahBinned => binary(Builder::SahBinned, primitives, &options),
             StructureKind::BvhLbvh => binary(Builder::Lbvh, primitives, &options),
             StructureKind::BvhHlbvh => binary(Builder::Hlbvh, primitives, &options),
+            StructureKind::BvhPloc => binary(Builder::Ploc, primitives, &options),
         };
         let n = primitives as f64;
         Self {
@@ -117,7 +124,7 @@ fn usual_nodes(builder: Builder, max_leaf_size: usize) -> f64 {
     // Leaves come out half full or fuller; but where primitives lie far apart, the heuristic wants smaller ones.
     let half_full = 4.8 / max_leaf_size as f64;
     match builder {
-        Builder::SahSweep | Builder::SahBinned => half_full.clamp(1.2, MOST_NODES),
+        Builder::SahSweep | Builder::SahBinned | Builder::Ploc => half_full.clamp(1.2, MOST_NODES),
         Builder::Midpoint | Builder::Median | Builder::Lbvh | Builder::Hlbvh => {
             half_full.min(MOST_NODES)
         }
@@ -150,6 +157,11 @@ fn binary(builder: Builder, n: usize, options: &BuildOptions) -> PerPrimitive {
             let leaves = 0.5 * nodes;
             let above = leaves * (2.0 * BOX + NUMBER + MOST_NODES * NODE);
             (KEY + pieces + tree).max(tree + 8.0 * leaves + above + NUMBER)
+        }
+        Builder::Ploc => {
+            // The order; clusters, and those of the next round; their neighbours. In the end merges and the tree.
+            let clustering = NUMBER + 2.0 * CLUSTER + 1.0 + MERGE;
+            (2.0 * KEY).max(clustering).max(NUMBER + MERGE + NUMBER + pieces + tree)
         }
     };
 

@@ -2,6 +2,7 @@
 //! they share, the recursion and its parallel form. `reinsertion/` improves a finished tree, whoever built it.
 
 mod builder;
+mod curve;
 pub(crate) mod driver;
 mod hlbvh;
 mod lbvh;
@@ -11,6 +12,7 @@ mod midpoint;
 mod morton;
 mod options;
 mod packed_aabb;
+mod ploc;
 mod preset;
 mod primitive;
 mod quicksort;

@@ -30,6 +30,20 @@ impl PackedAabb {
         self.min[3].to_bits().wrapping_sub(TAG_OFFSET)
     }
 
+    /// The box with numbers in both lanes that mean nothing.
+    #[inline(always)]
+    pub(super) fn with_tags(self, [first, second]: [u32; 2]) -> Self {
+        let mut tagged = self.with_tag(first);
+        tagged.max[3] = f32::from_bits(second.wrapping_add(TAG_OFFSET));
+        tagged
+    }
+
+    /// The numbers that were put into the lanes that mean nothing.
+    #[inline(always)]
+    pub(super) fn tags(&self) -> [u32; 2] {
+        [self.tag(), self.max[3].to_bits().wrapping_sub(TAG_OFFSET)]
+    }
+
     /// The smallest box around both. Neither has NaN.
     #[inline(always)]
     pub(crate) fn union(self, other: Self) -> Self {
@@ -79,6 +93,13 @@ impl PackedAabb {
     #[inline(always)]
     pub(crate) fn max(&self) -> [f32; 4] {
         self.max
+    }
+
+    /// The smallest coordinates and a number of no meaning, then the largest and another.
+    #[inline(always)]
+    pub(super) fn row(&self) -> [f32; 8] {
+        let ([a, b, c, d], [e, f, g, h]) = (self.min, self.max);
+        [a, b, c, d, e, f, g, h]
     }
 
     /// The lengths of the edges; may overflow to infinity.

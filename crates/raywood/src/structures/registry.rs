@@ -167,6 +167,8 @@ structures! {
         |geometry, options, work| Bvh2::build_in(Builder::Lbvh, geometry, options, work);
     BvhHlbvh, Bvh2, "bvh-hlbvh", "Binary BVH, leaves from a space-filling curve, the rest as bvh-sah-binned.",
         |geometry, options, work| Bvh2::build_in(Builder::Hlbvh, geometry, options, work);
+    BvhPloc, Bvh2, "bvh-ploc", "Binary BVH, neighbours along a space-filling curve merged from the bottom up.",
+        |geometry, options, work| Bvh2::build_in(Builder::Ploc, geometry, options, work);
     BvhWide, WideBvh, "bvh-wide", "BVH of sixteen children a node, traced by vector instructions: the default.", WideBvh::build_in;
     Octree, Octree, "octree", "Octree: crowded cells split in eight.", Octree::build_in;
     KdTree, KdTree, "kd-tree", "kD-tree: space divided by planes, surface area heuristic.", KdTree::build_in;
