@@ -201,11 +201,11 @@ fn wide(n: usize, options: &BuildOptions) -> PerPrimitive {
         peak += BOX;
     }
     let nodes = usual_nodes(builder, max_leaf_size);
-    // Blocks of eight are half full where primitives lie far apart.
+    // Blocks of eight are not full where primitives lie far apart.
     let structure = match max_leaf_size {
-        ..4 => 135.0,
-        4..8 => 122.0,
-        _ => 85.0,
+        ..4 => 92.0,
+        4..8 => 88.0,
+        _ => 72.0,
     };
     let (tree, plan) = (NODE * nodes + NUMBER, 20.0 * nodes);
     let peak = references * peak.max(tree + plan + structure);

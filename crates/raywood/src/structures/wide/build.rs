@@ -1,11 +1,12 @@
 //! Building the wide tree from a binary one.
 
 use super::WideBvh;
-use super::collapse::{LEAF_LINES, NODE_LINES, Plan};
+use super::collapse::{BLOCK_LINES, NODE_LINES, Plan, primitives};
 use super::node::{Reference, WIDTH, WideNode};
 use super::parts::Parts;
+use super::sharing::Place;
 use crate::build::{BuildMemory, Work};
-use crate::geometry::TriangleBlock;
+use crate::geometry::{LANES, TriangleBlock};
 use crate::simd::{Arena, Part};
 use crate::structures::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
@@ -44,27 +45,30 @@ pub(super) fn build<G: Geometry>(
     let binary = Bvh2::cost_for_wide(&options);
     let [building, planning, filling] = work.shares([binary, PLAN_COST, FILL_COST]);
     let tree = Bvh2::build_for_wide(geometry, &options, building)?;
-    let plan = Plan::new(&tree, planning)?;
+    let parts = Parts::of(&tree, geometry.len());
+    let plan = Plan::new(&tree, &parts, planning)?;
     let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
     let lines = match tree.nodes() {
         [] => 0,
         _ if is_node => NODE_LINES + plan.lines_below(0),
-        _ => LEAF_LINES,
+        _ => BLOCK_LINES,
     };
     if lines > Reference::LINES {
         return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
     }
     // Now it is known how large the tree becomes: scenes can be made in which it is larger than was to be expected.
     BuildMemory::check_lists(tree.bytes() + plan.bytes() + 64 * lines, geometry.len(), allowed)?;
-    let parts = Parts::of(&tree, geometry.len());
     let wide = Wide { geometry, tree: &tree, plan: &plan, parts: &parts, work: filling, lines };
-    let filled = Arena::filled(lines, |all| match tree.nodes() {
+    let filled = Arena::filled(lines, |mut all| match tree.nodes() {
         [] => (Reference::NOTHING, 0),
         _ if is_node => (Reference::node(0), wide.fill(0, all)),
         _ => {
-            let primitives = wide.primitives(0);
+            let primitives = tree.primitive_indices();
             let corners: Vec<_> = primitives.iter().map(|&p| geometry.triangle(p)).collect();
-            (wide.leaf(primitives, &corners, all), 0)
+            let mut block = TriangleBlock::default();
+            let leaf = wide.leaf(primitives, &corners, (all.first(), false), &mut block);
+            all.put(block);
+            (leaf, 0)
         }
     });
     let (arena, (root, depth)) = filled.ok_or(BuildError::Cancelled)?;
@@ -87,7 +91,7 @@ pub(super) fn build<G: Geometry>(
 /// What the leaves of a node are made of, kept so that not every node needs memory of its own.
 #[derive(Default)]
 struct Scratch {
-    primitives: Vec<u32>,
+    references: Vec<u32>,
     corners: Vec<Option<[Vec3; 3]>>,
 }
 
@@ -103,8 +107,8 @@ struct Wide<'a, G> {
 }
 
 impl<G: Geometry> Wide<'_, G> {
-    /// Fills the place of node `number` of the binary tree with a wide node and everything below it: first its children side by side, then what is below
-    /// the first of them, and so on. Returns how many nodes lie on the longest way down.
+    /// Fills the place of node `number` of the binary tree with a wide node and everything below it: first its children side by side, leaves and then nodes, then what is
+    /// below the first of these, and so on. Returns how many nodes lie on the longest way down.
     fn fill(&self, number: usize, mut all: Part<'_>) -> usize {
         let place = all.take(NODE_LINES);
         self.fill_below(number, place, all, &mut Scratch::default())
@@ -118,7 +122,7 @@ impl<G: Geometry> Wide<'_, G> {
         mut below: Part<'_>,
         scratch: &mut Scratch,
     ) -> usize {
-        let Scratch { primitives, corners } = scratch;
+        let Scratch { references, corners } = scratch;
         let is_large = below.len() > PARALLEL_LINES;
         if is_large && self.work.check().is_err() {
             place.abandon();
@@ -127,20 +131,25 @@ impl<G: Geometry> Wide<'_, G> {
         let children = self.plan.children(self.tree, number);
         let leaves = children.numbers().filter(|&child| self.plan.is_leaf(child));
         // All their corners before anything is made of them: they lie all over the memory, and the processor waits for many at a time.
-        primitives.clear();
-        leaves.for_each(|leaf| primitives.extend_from_slice(self.primitives(leaf)));
+        references.clear();
+        leaves.for_each(|leaf| references.extend_from_slice(primitives(self.tree, leaf)));
         corners.clear();
-        corners.extend(primitives.iter().map(|&primitive| self.geometry.triangle(primitive)));
+        corners.extend(references.iter().map(|&primitive| self.geometry.triangle(primitive)));
 
+        let sharing = self.plan.sharing(self.tree, self.parts, &children);
+        let mut places = below.take(BLOCK_LINES * sharing.blocks);
+        let mut blocks = [TriangleBlock::default(); WIDTH];
         let mut unused = &corners[..];
         let mut node = WideNode::EMPTY;
         let mut nodes = [const { None }; WIDTH];
         for (lane, number) in children.numbers().enumerate() {
             let child = if self.plan.is_leaf(number) {
-                let primitives = self.primitives(number);
+                let primitives = primitives(self.tree, number);
                 let (corners, others) = unused.split_at(primitives.len());
                 unused = others;
-                self.leaf(primitives, corners, below.take(LEAF_LINES))
+                let Place { block, at_end } = sharing.place(lane);
+                let line = places.first() + BLOCK_LINES * block;
+                self.leaf(primitives, corners, (line, at_end), &mut blocks[block])
             } else {
                 let place = below.take(NODE_LINES);
                 let child = Reference::node(place.first());
@@ -150,6 +159,7 @@ impl<G: Geometry> Wide<'_, G> {
             node.set(lane, &self.tree.nodes()[number].bounds(), child);
         }
         place.put(node);
+        blocks[..sharing.blocks].iter().for_each(|&block| places.put(block));
 
         let tasks = nodes.into_iter().flatten().map(|(number, place)| {
             let below = below.take(self.plan.lines_below(number));
@@ -176,45 +186,28 @@ impl<G: Geometry> Wide<'_, G> {
         1 + deepest.unwrap_or(0)
     }
 
-    /// All primitives below node `number` of the binary tree.
-    fn primitives(&self, number: usize) -> &[u32] {
-        // Their numbers lie side by side, from those of the leftmost leaf to those of the rightmost.
-        let nodes = self.tree.nodes();
-        let (mut first, mut last) = (&nodes[number], &nodes[number]);
-        while !first.is_leaf() {
-            first = self.tree.children(first)[0];
-        }
-        while !last.is_leaf() {
-            last = self.tree.children(last)[1];
-        }
-        let range = first.left_first() as usize..(last.left_first() + last.count()) as usize;
-        &self.tree.primitive_indices()[range]
-    }
-
-    /// Fills the place of a leaf of some primitives, which are triangles of these corners or none.
+    /// Puts the primitives of a leaf, which are triangles of these corners or none, into lanes of a block.
+    #[inline(always)]
     fn leaf(
         &self,
         primitives: &[u32],
         corners: &[Option<[Vec3; 3]>],
-        mut place: Part<'_>,
+        (line, at_end): (usize, bool),
+        block: &mut TriangleBlock,
     ) -> Reference {
-        let mut block = TriangleBlock::default();
+        let count = self.parts.distinct(primitives).count();
+        let first = if at_end { LANES - count } else { 0 };
         let mut mixed = false;
-        let mut lane = 0;
-        for (number, (&primitive, triangle)) in primitives.iter().zip(corners).enumerate() {
-            // Of a cut triangle several parts may have come together.
-            if self.parts.contain(primitive) && primitives[..number].contains(&primitive) {
-                continue;
+        for (lane, (number, primitive)) in self.parts.distinct(primitives).enumerate() {
+            mixed |= corners[number].is_none();
+            match corners[number] {
+                Some(corners) => block.set(first + lane, primitive, corners),
+                None => {
+                    let ball = self.geometry.bounding_ball(primitive);
+                    block.set_other(first + lane, primitive, ball);
+                }
             }
-            mixed |= triangle.is_none();
-            match *triangle {
-                Some(corners) => block.set(lane, primitive, corners),
-                None => block.set_other(lane, primitive, self.geometry.bounding_ball(primitive)),
-            }
-            lane += 1;
         }
-        let leaf = Reference::leaf(place.first(), lane, mixed);
-        place.put(block);
-        leaf
+        Reference::leaf(line, count, mixed, at_end)
     }
 }

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use super::WideBvh;
-use super::node::{Reference, WideNode};
-use crate::geometry::{LANES, TriangleBlock};
+use super::collapse::{BLOCK_LINES, NODE_LINES};
+use super::node::Reference;
 use crate::{Aabb, Geometry, ValidationError, Vec3};
 
-/// Checks that every cache line of nodes and leaves is reached once, every primitive lies in exactly one leaf or its parts in several, boxes hold what is below them, blocks hold the corners of
+/// Checks that every cache line of nodes and leaves is reached once, leaves in one block have lanes of their own, every primitive lies in exactly one leaf or its parts in several, boxes hold what is below them, blocks hold the corners of
 /// their triangles, and the depth is what stacks are made for.
 pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), ValidationError> {
     let (primitives, lines) = (geometry.len(), tree.arena.len());
@@ -19,6 +19,8 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
     let mut reached = vec![0usize; lines];
     let mut times = vec![0usize; primitives];
     let mut parts = HashMap::<u32, Vec<Aabb>>::new();
+    // By the first lines of blocks the lanes that leaves have there.
+    let mut blocks = HashMap::<usize, u32>::new();
     let mut pending = vec![(tree.root, tree.bounds, 1)];
     while let Some((reference, bounds, depth)) = pending.pop() {
         if reference == Reference::NOTHING {
@@ -26,10 +28,13 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
         }
         let node = reference.line();
         let bad = ValidationError::BadReference { node };
-        let size =
-            if reference.is_leaf() { size_of::<TriangleBlock>() } else { size_of::<WideNode>() };
-        let Some(counts) = reached.get_mut(node..node + size / 64) else { return Err(bad) };
-        for times in counts {
+        let size = if reference.is_leaf() { BLOCK_LINES } else { NODE_LINES };
+        let Some(counts) = reached.get_mut(node..node + size) else { return Err(bad) };
+        // Of two leaves in one block each has its own lanes.
+        let taken = if reference.is_leaf() { blocks.entry(node).or_insert(0) } else { &mut 0 };
+        let is_shared = *taken != 0 && *taken & reference.lanes() == 0;
+        *taken |= reference.lanes();
+        for times in counts.iter_mut().filter(|_| !is_shared) {
             *times += 1;
             if *times > 1 {
                 return Err(ValidationError::NodeReached { node, times: *times });
@@ -49,8 +54,7 @@ pub(super) fn check<G: Geometry>(tree: &WideBvh, geometry: &G) -> Result<(), Val
         }
 
         let block = tree.block(reference);
-        debug_assert!(reference.count() <= LANES);
-        for (lane, &primitive) in block.primitives[..reference.count()].iter().enumerate() {
+        for (lane, primitive) in tree.primitives_of(reference) {
             let Some(times) = times.get_mut(primitive as usize) else { return Err(bad) };
             *times += 1;
             let content = geometry.bounds(primitive);

@@ -2,6 +2,8 @@
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.
 
 use super::node::{WIDTH, WideNode};
+use super::parts::Parts;
+use super::sharing::Sharing;
 use crate::Bvh2;
 use crate::build::{Cancelled, Work};
 use crate::geometry::{LANES, TriangleBlock};
@@ -10,14 +12,32 @@ use crate::parallel::join_if;
 /// How many cache lines a node takes.
 pub(super) const NODE_LINES: usize = size_of::<WideNode>() / 64;
 
-/// How many cache lines a leaf takes.
-pub(super) const LEAF_LINES: usize = size_of::<TriangleBlock>() / 64;
+/// How many cache lines a block takes.
+pub(super) const BLOCK_LINES: usize = size_of::<TriangleBlock>() / 64;
 
 /// What visiting a leaf costs, in visits to nodes.
 const LEAF_COST: f32 = 1.0;
 
 /// Subtrees with more nodes below them are looked at in parallel.
 const PARALLEL_NODES: usize = 4096;
+
+/// Below nodes with more cache lines it is asked whether to go on counting them.
+const MANY_LINES: usize = 1 << 16;
+
+/// All references below a node of a binary tree.
+pub(super) fn primitives(tree: &Bvh2, number: usize) -> &[u32] {
+    // They lie side by side, from those of the leftmost leaf to those of the rightmost.
+    let nodes = tree.nodes();
+    let (mut first, mut last) = (&nodes[number], &nodes[number]);
+    while !first.is_leaf() {
+        first = tree.children(first)[0];
+    }
+    while !last.is_leaf() {
+        last = tree.children(last)[1];
+    }
+    let range = first.left_first() as usize..(last.left_first() + last.count()) as usize;
+    &tree.primitive_indices()[range]
+}
 
 /// What is best for each node of a binary tree.
 pub(super) struct Plan {
@@ -30,7 +50,7 @@ struct Choice {
     /// How many trees the left child becomes when the node's subtree becomes at most so many, from two to sixteen, by number less one; 0 where fewer
     /// trees are better. First stands whether the node becomes a leaf when its subtree is to be one tree.
     trees: [u8; WIDTH],
-    /// How many cache lines everything below the wide node takes that the node becomes; of a leaf none.
+    /// How many cache lines everything below the wide node takes that the node becomes, if it becomes one.
     lines_below: u32,
 }
 
@@ -41,8 +61,6 @@ impl Choice {
 /// What a subtree is as at most so many separate trees, from one to sixteen, by number less one.
 struct Trees {
     costs: [f32; WIDTH],
-    /// Cache lines.
-    lines: [u32; WIDTH],
     /// Into how many trees it can be divided: as many as it has leaves.
     most: usize,
     /// How many primitives it has.
@@ -54,21 +72,59 @@ impl Trees {
     fn one(cost: f32, primitives: u32) -> Self {
         let mut costs = [f32::INFINITY; WIDTH];
         costs[0] = cost;
-        Self { costs, lines: [LEAF_LINES as u32; WIDTH], most: 1, primitives }
+        Self { costs, most: 1, primitives }
     }
 }
 
 impl Plan {
     /// Finds what costs least. O(nodes), in parallel.
-    pub(super) fn new(tree: &Bvh2, work: Work<'_>) -> Result<Self, Cancelled> {
-        let [making_room, searching] = work.shares([1.0, 10.0]);
+    pub(super) fn new(tree: &Bvh2, parts: &Parts, work: Work<'_>) -> Result<Self, Cancelled> {
+        let [making_room, searching, counting] = work.shares([1.0, 10.0, 1.0]);
         let mut choices = making_room.copies(Choice::NONE, tree.nodes().len())?;
         if let Some((root, below)) = choices.split_first_mut() {
             let root_area = tree.bounds().half_area();
             Search { tree, root_area, work: searching }.best(0, root, below);
         }
         work.check()?;
-        Ok(Self { choices })
+        let mut plan = Self { choices };
+        if !tree.nodes().is_empty() && !plan.is_leaf(0) {
+            plan.count_lines(tree, parts, 0, counting)?;
+        }
+        Ok(plan)
+    }
+
+    /// Counts the cache lines below the wide node that a node becomes.
+    fn count_lines(
+        &mut self,
+        tree: &Bvh2,
+        parts: &Parts,
+        number: usize,
+        work: Work<'_>,
+    ) -> Result<usize, Cancelled> {
+        let children = self.children(tree, number);
+        let mut lines = BLOCK_LINES * self.sharing(tree, parts, &children).blocks;
+        for child in children.numbers() {
+            if !self.is_leaf(child) {
+                let below = self.count_lines(tree, parts, child, work.without_progress())?;
+                lines += NODE_LINES + below;
+            }
+        }
+        self.choices[number].lines_below = u32::try_from(lines).unwrap_or(u32::MAX);
+        if lines > MANY_LINES {
+            work.check()?;
+        }
+        Ok(lines)
+    }
+
+    /// How those of some children that become leaves share blocks.
+    pub(super) fn sharing(&self, tree: &Bvh2, parts: &Parts, children: &Children) -> Sharing {
+        let mut counts = [0; WIDTH];
+        for (count, child) in counts.iter_mut().zip(children.numbers()) {
+            if self.is_leaf(child) {
+                *count = parts.distinct(primitives(tree, child)).count();
+            }
+        }
+        Sharing::of(&counts)
     }
 
     /// How much memory it takes.
@@ -186,7 +242,6 @@ impl Search<'_> {
         let primitives = left.primitives.saturating_add(right.primitives);
 
         let mut costs = [f32::INFINITY; WIDTH];
-        let mut lines = [LEAF_LINES as u32; WIDTH];
         // Divide so many trees among both children in the best way. All numbers of trees to the right at once: what a child cannot be divided into costs infinitely
         // much, and more than sixteen trees are not looked at.
         let most = (left.most + right.most).min(WIDTH);
@@ -205,11 +260,8 @@ impl Search<'_> {
             }
         }
         for trees in 2..=most {
-            let to_left = to_left[trees - 1] as usize;
-            (costs[trees - 1], choice.trees[trees - 1]) = (divided[trees - 1], to_left as u8);
-            let to_left = to_left.max(1);
-            lines[trees - 1] =
-                left.lines[to_left - 1].saturating_add(right.lines[trees - to_left - 1]);
+            costs[trees - 1] = divided[trees - 1];
+            choice.trees[trees - 1] = to_left[trees - 1] as u8;
         }
 
         // One tree: a leaf, or a node over sixteen.
@@ -222,9 +274,6 @@ impl Search<'_> {
         costs[0] = as_leaf.min(as_node);
         if as_leaf <= as_node && as_leaf.is_finite() {
             choice.trees[0] = 1;
-        } else {
-            choice.lines_below = lines[most - 1];
-            lines[0] = choice.lines_below.saturating_add(NODE_LINES as u32);
         }
         for trees in 2..=most {
             if costs[trees - 2] <= costs[trees - 1] {
@@ -233,9 +282,8 @@ impl Search<'_> {
                     choice.trees[trees - 1] = 0;
                 }
                 costs[trees - 1] = costs[trees - 2];
-                lines[trees - 1] = lines[trees - 2];
             }
         }
-        Trees { costs, lines, most, primitives }
+        Trees { costs, most, primitives }
     }
 }

@@ -13,6 +13,7 @@ mod packet;
 pub(crate) mod pairs;
 pub(crate) mod parts;
 pub(crate) mod search;
+mod sharing;
 mod single;
 mod sink;
 mod slabs;
@@ -64,7 +65,7 @@ pub struct WideBvh {
     depth: usize,
     /// The node or leaf that holds everything; [`Reference::NOTHING`] if there is nothing.
     root: Reference,
-    /// Nodes and leaves, depth first, the children of a node side by side.
+    /// Nodes and blocks of leaves, depth first, the children of a node side by side.
     arena: Arena,
     /// The instructions that trace it.
     level: SimdLevel,
@@ -133,10 +134,16 @@ impl WideBvh {
         self.arena.get(reference.line())
     }
 
-    /// The triangles that a reference to a leaf means.
+    /// The block in which the leaf lies that a reference means.
     #[inline(always)]
     fn block(&self, reference: Reference) -> &TriangleBlock {
         self.arena.get(reference.line())
+    }
+
+    /// The primitives of a leaf, and in which lanes of its block they are.
+    fn primitives_of(&self, leaf: Reference) -> impl Iterator<Item = (usize, u32)> {
+        let block = self.block(leaf);
+        step::lanes(leaf.lanes()).map(|lane| (lane, block.primitives[lane]))
     }
 
     /// Where a node or leaf lies in memory, to be fetched. Of nothing it means nothing.

@@ -61,7 +61,8 @@ impl WideNode {
 /// | 0       | 0           | 1                                                      |
 /// | 1 to 3  | 0           | the number of its primitives, less one                 |
 /// | 4       | 0           | whether there are primitives in it that are no triangles |
-/// | 5 to 31 | the number of its first cache line, for both                         |
+/// | 5       | 0           | whether it ends with the last lane of its block instead of beginning with the first |
+/// | 6 to 31 | the number of the node's or block's first cache line, for both        |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Reference(pub(super) u32);
 
@@ -69,15 +70,16 @@ impl Reference {
     /// Nothing: of a tree without primitives, of a child that is not there, and the end of a stack.
     pub(super) const NOTHING: Self = Self(u32::MAX);
 
-    /// Numbers of cache lines lie below this: 8 GiB.
-    pub(super) const LINES: usize = (1 << 27) - 1;
+    /// Numbers of cache lines lie below this: 4 GiB.
+    pub(super) const LINES: usize = (1 << 26) - 1;
 
     pub(super) fn node(line: usize) -> Self {
-        Self((line as u32) << 5)
+        Self((line as u32) << 6)
     }
 
-    pub(super) fn leaf(line: usize, count: usize, mixed: bool) -> Self {
-        Self((line as u32) << 5 | u32::from(mixed) << 4 | (count as u32 - 1) << 1 | 1)
+    pub(super) fn leaf(line: usize, count: usize, mixed: bool, at_end: bool) -> Self {
+        let flags = u32::from(at_end) << 5 | u32::from(mixed) << 4;
+        Self((line as u32) << 6 | flags | (count as u32 - 1) << 1 | 1)
     }
 
     #[inline(always)]
@@ -88,7 +90,7 @@ impl Reference {
     /// The number of the first line of the node or leaf.
     #[inline(always)]
     pub(super) fn line(self) -> usize {
-        (self.0 >> 5) as usize
+        (self.0 >> 6) as usize
     }
 
     /// How many primitives a leaf has.
@@ -100,7 +102,9 @@ impl Reference {
     /// The lanes of a leaf's block that hold primitives.
     #[inline(always)]
     pub(super) fn lanes(self) -> u32 {
-        (2 << (self.0 >> 1 & 7)) - 1
+        let less_one = self.0 >> 1 & 7;
+        let first = (7 - less_one) & (0u32.wrapping_sub(self.0 >> 5 & 1));
+        ((2 << less_one) - 1) << first
     }
 
     /// Whether a leaf has primitives that are no triangles.

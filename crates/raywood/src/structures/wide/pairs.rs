@@ -32,8 +32,8 @@ impl<F: FnMut(u32, u32) -> ControlFlow<()>> Kernel for Pairs<'_, F> {
         }
         while let Some(((a, a_bounds), (b, b_bounds))) = waiting.pop() {
             if a.is_leaf() && b.is_leaf() {
-                for &primitive in &first.block(a).primitives[..a.count()] {
-                    for &other in &second.block(b).primitives[..b.count()] {
+                for (_, primitive) in first.primitives_of(a) {
+                    for (_, other) in second.primitives_of(b) {
                         let several = first.parts.contain(primitive) || second.parts.contain(other);
                         if !several || told.insert((primitive, other)) {
                             visit(primitive, other)?;

@@ -65,6 +65,14 @@ impl Parts {
         self.exist() && self.bits[primitive as usize / 64] >> (primitive % 64) & 1 == 1
     }
 
+    /// The primitives that a leaf of some references has, each once: several parts of one may have come together.
+    #[inline(always)]
+    pub(super) fn distinct(&self, references: &[u32]) -> impl Iterator<Item = (usize, u32)> {
+        references.iter().copied().enumerate().filter(|&(place, primitive)| {
+            !self.contain(primitive) || !references[..place].contains(&primitive)
+        })
+    }
+
     /// How much memory they take.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.bits[..])
@@ -174,7 +182,7 @@ mod tests {
                     .extend(cut.node(reference).children().map(|(bounds, child)| (child, bounds)));
                 continue;
             }
-            for &primitive in &cut.block(reference).primitives[..reference.count()] {
+            for (_, primitive) in cut.primitives_of(reference) {
                 for (axis, corner) in corners_of_parts(&mesh, primitive, &bounds) {
                     targets += 1;
                     for trial in 0..200 {

@@ -185,7 +185,7 @@ impl WideBvh {
                 continue;
             }
             if reference.is_leaf() {
-                for &primitive in &self.block(reference).primitives[..reference.count()] {
+                for (_, primitive) in self.primitives_of(reference) {
                     if told.is_new(primitive) {
                         limit = visit(primitive)?;
                     }

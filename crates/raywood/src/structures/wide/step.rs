@@ -106,7 +106,7 @@ fn doubtful_blocks<G: Geometry>(
 /// The lanes of a leaf that hold primitives which are no triangles.
 #[inline(always)]
 pub(super) fn others(block: &TriangleBlock, leaf: Reference) -> u32 {
-    if leaf.is_mixed() { block.others() } else { 0 }
+    if leaf.is_mixed() { block.others() & leaf.lanes() } else { 0 }
 }
 
 /// The lanes of a set.

@@ -165,7 +165,7 @@ fn damage_is_noticed() {
     damaged(|tree| root(tree).planes[0][0][0] += 10.0);
     damaged(|tree| root(tree).children[1] = root(tree).children[0]);
     damaged(|tree| root(tree).children[0] = Reference::NOTHING.0);
-    damaged(|tree| root(tree).children[0] |= u32::MAX << 5);
+    damaged(|tree| root(tree).children[0] |= u32::MAX << 6);
     damaged(|tree| first_leaf(tree).primitives[0] = 100_000);
     damaged(|tree| first_leaf(tree).primitives[0] = first_leaf(tree).primitives[1]);
     damaged(|tree| {

@@ -124,9 +124,8 @@ impl Winding {
     ) -> (Sums, u32) {
         let mut sums = Sums::NONE;
         if reference.is_leaf() {
-            let block = tree.block(reference);
             let mut repeated = 0;
-            for (lane, &primitive) in block.primitives[..reference.count()].iter().enumerate() {
+            for (lane, primitive) in tree.primitives_of(reference) {
                 if told.is_new(primitive) {
                     sums.join(&sums_of(geometry, primitive));
                 } else {
