@@ -1,11 +1,9 @@
 //! Files that are not there, not whole, or not what they seem: an error or a sound scene, never a panic.
 
-mod formats_support;
-
 use std::fs;
 use std::panic::catch_unwind;
 
-use formats_support::{
+use crate::formats_support::{
     Folder, Random, check_error, check_scene, cube_buffer, cube_json, cube_ply, error_of, glb,
     load, square_stl, triangle_count,
 };

@@ -1,12 +1,10 @@
 //! Real models, where this machine has them: exact numbers of triangles and the sizes that the models are known to have.
 
-mod formats_support;
-
 use std::fs;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 
-use formats_support::{check_error, check_scene, real_scenes, triangle_count};
+use crate::formats_support::{check_error, check_scene, real_scenes, triangle_count};
 use raywood_scene::{LoadOptions, load_file};
 
 /// File, triangles, and the size of the box around it.

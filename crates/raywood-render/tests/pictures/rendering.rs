@@ -1,10 +1,8 @@
 //! What holds for every picture: the same for any number of threads, stoppable, refused when it makes no sense.
 
-mod common;
-
 use std::time::{Duration, Instant};
 
-use common::{camera, one_pixel, still_life, still_life_camera};
+use crate::common::{camera, one_pixel, still_life, still_life_camera};
 use raywood::Vec3;
 use raywood_render::{
     CameraError, CameraRays, PreparedScene, Progress, RenderError, RenderOptions, render,
@@ -60,7 +58,10 @@ fn a_cancelled_rendering_stops_within_a_tenth_of_a_second() {
             progress.cancel();
             now
         });
-        let result = render(&prepared, &still_life_camera(), &scene.lights, &options, &progress);
+        // Threads of its own, so that it waits for no other test.
+        let result = pool(2).install(|| {
+            render(&prepared, &still_life_camera(), &scene.lights, &options, &progress)
+        });
         assert_eq!(result.err(), Some(RenderError::Cancelled));
         watcher.join().expect("the watcher")
     });

@@ -1,8 +1,6 @@
 //! What holds for every heat map: the counts of single rays, the same for any number of threads, drawn on one scale.
 
-mod common;
-
-use common::{still_life, still_life_camera};
+use crate::common::{still_life, still_life_camera};
 use raywood::{Counts, Geometry, StructureKind};
 use raywood_render::{
     CameraRays, HeatMap, HeatQuantity, PreparedScene, Progress, RenderError, RenderOptions,

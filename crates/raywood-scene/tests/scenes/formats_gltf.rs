@@ -1,8 +1,6 @@
 //! glTF: known contents, known counts, and what is said about faults.
 
-mod formats_support;
-
-use formats_support::{
+use crate::formats_support::{
     Folder, area, check_scene, cube_buffer, cube_json, error_of, glb, load, load_strictly,
     triangle_count, volume,
 };

@@ -1,5 +1,4 @@
 //! What the tests of pictures share: small scenes and one-pixel renderings.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use raywood::{Spheres, TriangleMesh, Vec3};
 use raywood_render::{Image, PreparedScene, Progress, RayCounts, RenderOptions, render};

@@ -1,8 +1,6 @@
 //! Bounds over a picture: in the right places, faint where hidden, for every structure, level, thread count and camera.
 
-mod common;
-
-use common::{camera, matte, scene, still_life, still_life_camera};
+use crate::common::{camera, matte, scene, still_life, still_life_camera};
 use raywood::{StructureKind, Vec3};
 use raywood_render::{
     BoundsOverlay, CameraRays, PreparedScene, Progress, RenderError, RenderOptions, RgbImage,

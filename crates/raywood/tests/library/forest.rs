@@ -138,7 +138,7 @@ fn a_million_identical_triangles_are_no_trouble() {
 
 /// The memory bounds of `docs/memory.md`: name, bytes a primitive, bytes besides.
 fn memory_bounds() -> Vec<(String, usize, usize)> {
-    include_str!("../../../docs/memory.md")
+    include_str!("../../../../docs/memory.md")
         .lines()
         .filter_map(|line| {
             let mut columns = line.split('|').map(str::trim).skip(1);

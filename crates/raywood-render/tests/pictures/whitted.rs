@@ -1,8 +1,6 @@
 //! Whitted's recursion on scenes whose colours can be computed by hand.
 
-mod common;
-
-use common::{
+use crate::common::{
     assert_near, camera, clear, flat_background, image, level, light, look, matte, one_pixel, scene,
 };
 use raywood::Vec3;

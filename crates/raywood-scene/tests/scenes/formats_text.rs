@@ -1,8 +1,6 @@
 //! OBJ, MTL, PLY and STL: known contents, known counts, and what is said about faults.
 
-mod formats_support;
-
-use formats_support::{
+use crate::formats_support::{
     CUBE, Folder, area, check_scene, cube_ply, error_of, load, load_strictly, square_stl,
     triangle_count, volume,
 };

@@ -1,8 +1,6 @@
 //! Default cameras and lights: a thing is seen from outside, a room from within, a stage through its opening.
 
-mod common;
-
-use common::{camera, level, light, matte, scene};
+use crate::common::{camera, level, light, matte, scene};
 use raywood::{Aabb, TriangleMesh, Vec3};
 use raywood_render::{
     CameraRays, PreparedScene, Progress, RenderOptions, Setting, choose_camera, default_view,

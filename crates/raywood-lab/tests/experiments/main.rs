@@ -1,0 +1,4 @@
+//! The tests of experiments, one subject per file, in one program.
+
+mod benchmark;
+mod comparison;

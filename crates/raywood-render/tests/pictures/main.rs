@@ -1,0 +1,11 @@
+//! The tests of pictures, one subject per file, in one program: what is generic is compiled once for all of them.
+
+mod bounds_overlay;
+mod common;
+mod film;
+mod heat_map;
+mod optics;
+mod references;
+mod rendering;
+mod view;
+mod whitted;

@@ -1,0 +1,8 @@
+//! The tests of scenes and formats, one subject per file, in one program.
+
+mod crossings_real;
+mod formats_gltf;
+mod formats_hostile;
+mod formats_real;
+mod formats_support;
+mod formats_text;

@@ -1,0 +1,23 @@
+//! The tests of the library, one subject per file, in one program: what is generic is compiled once for all of them.
+
+mod all_hits;
+mod bounding_balls;
+mod closest_point;
+mod conformance;
+mod forest;
+mod grids;
+mod hit_options;
+mod instances;
+mod kd_tree;
+mod octree;
+mod overlap;
+mod packets;
+mod reinsertion;
+mod solid;
+mod spatial_splits;
+mod sphere_cast;
+mod spheres;
+mod statistics;
+mod trees;
+mod watertight;
+mod wide_packets;
