@@ -98,7 +98,8 @@ fn what_is_no_question_has_no_answer() {
     bvh.closest_point_batch(&points, f32::INFINITY, &mut answers);
     assert_eq!(answers.map(|answer| answer.map(|found| found.distance)), [None, Some(2.0), None]);
 
-    let nothing = Bvh::build(TriangleMesh::default()).expect("it builds");
+    let no_mesh = TriangleMesh::default();
+    let nothing = Bvh::build(&no_mesh).expect("it builds");
     assert_eq!(nothing.closest_point([0.0; 3], f32::INFINITY), None);
 }
 

@@ -108,7 +108,8 @@ fn the_nearest_hits_are_the_first_of_all() {
 fn spheres_are_met_where_double_precision_says() {
     let mut rng = Rng::new(5);
     let spheres: Vec<_> = (0..200).map(|_| (rng.in_cube(), rng.range(0.01, 0.5))).collect();
-    let bvh = Bvh::build(Spheres::new(spheres.clone()).expect("sound")).expect("it builds");
+    let geometry = Spheres::new(spheres.clone()).expect("sound");
+    let bvh = Bvh::build(&geometry).expect("it builds");
     let mut found = 0;
     for ray in some_rays(5000, 6) {
         let mut expected = Vec::new();
@@ -310,7 +311,8 @@ fn batches_answer_as_single_rays_do() {
 fn what_is_empty_or_invalid_has_no_hits() {
     let nothing = TriangleMesh::new(Vec::<Vec3>::new(), vec![]).expect("legal");
     let empty = Bvh::build(&nothing).expect("it builds");
-    let full = Bvh::build(mixed(1)).expect("it builds");
+    let geometry = mixed(1);
+    let full = Bvh::build(&geometry).expect("it builds");
     let good = Ray::new([0.0; 3], [0.0, 0.0, 1.0]);
     let bad = [
         Ray::new([f32::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]),

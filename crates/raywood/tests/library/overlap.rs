@@ -135,7 +135,8 @@ fn regions_that_hold_nothing_or_everything() {
     ] {
         assert!(touching(&mut bvh, &empty).is_empty(), "{empty:?}");
     }
-    let mut nothing = Bvh::build(TriangleMesh::default()).expect("it builds");
+    let no_mesh = TriangleMesh::default();
+    let mut nothing = Bvh::build(&no_mesh).expect("it builds");
     assert!(touching(&mut nothing, &Aabb { min: -infinite, max: infinite }).is_empty());
     assert!(touching(&mut nothing, &Ball::new([0.0; 3], f32::INFINITY)).is_empty());
 }
@@ -160,7 +161,8 @@ fn spheres_are_touched_by_what_reaches_their_surface() {
 
 #[test]
 fn batches_answer_as_single_regions_do() {
-    let bvh = Bvh::build(shapes::soup(500, 0.1, 3)).expect("it builds");
+    let mesh = shapes::soup(500, 0.1, 3);
+    let bvh = Bvh::build(&mesh).expect("it builds");
     let mut rng = Rng::new(34);
     let balls: Vec<Ball> = (0..1000).map(|_| Ball::new(rng.in_cube(), 0.1 * rng.unit())).collect();
     let mut answers = vec![false; balls.len()];
@@ -204,7 +206,8 @@ fn triangles() {
 fn triangles_in_one_plane_and_without_area() {
     let mesh =
         TriangleMesh::new(vec![[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]], vec![[0, 1, 2]]);
-    let mut bvh = Bvh::build(mesh.expect("finite")).expect("it builds");
+    let mesh = mesh.expect("finite");
+    let mut bvh = Bvh::build(&mesh).expect("it builds");
     let mut touches = |corners: [[f32; 3]; 3]| {
         let region = corners.map(Vec3::from);
         let before = touching(&mut bvh, &region).len() == 1;
@@ -312,15 +315,17 @@ fn pairs_of_two_geometries() {
         }
     }
     assert!(bvh.overlaps_any_of(&other));
-    let far = Bvh::build(shapes::uv_sphere(4, Vec3::splat(9.0), 1.0)).expect("it builds");
-    let nothing = Bvh::build(TriangleMesh::default()).expect("it builds");
+    let far = shapes::uv_sphere(4, Vec3::splat(9.0), 1.0);
+    let far = Bvh::build(&far).expect("it builds");
+    let no_mesh = TriangleMesh::default();
+    let nothing = Bvh::build(&no_mesh).expect("it builds");
     assert!(
         !bvh.overlaps_any_of(&far)
             && !bvh.overlaps_any_of(&nothing)
             && !nothing.overlaps_any_of(&bvh)
     );
     let ball = Spheres::new(vec![(Vec3::splat(9.0), 1.0)]).expect("finite");
-    let ball = Bvh::build(ball).expect("it builds");
+    let ball = Bvh::build(&ball).expect("it builds");
     assert!(
         ball.overlaps_any_of(&far) && far.overlaps_any_of(&ball) && !bvh.overlaps_any_of(&ball)
     );

@@ -137,10 +137,12 @@ fn spheres_are_solid() {
 
 #[test]
 fn nothing_contains_nothing() {
-    let nothing = Bvh::build(TriangleMesh::default()).expect("it builds");
+    let no_mesh = TriangleMesh::default();
+    let nothing = Bvh::build(&no_mesh).expect("it builds");
     assert!(!nothing.solid().contains([0.0; 3]));
     assert_eq!(nothing.solid().signed_distance([0.0; 3]), None);
-    let bvh = Bvh::build(shapes::uv_sphere(4, Vec3::ZERO, 1.0)).expect("it builds");
+    let mesh = shapes::uv_sphere(4, Vec3::ZERO, 1.0);
+    let bvh = Bvh::build(&mesh).expect("it builds");
     for bad in [f32::NAN, f32::INFINITY] {
         assert!(!bvh.solid().contains([0.0, bad, 0.0]));
         assert_eq!(bvh.solid().signed_distance([bad, 0.0, 0.0]), None);

@@ -434,8 +434,8 @@ fn packets_do_not_slip_through_edges() {
 fn packets_meet_what_is_no_triangle() {
     let mut rng = Rng::new(5);
     let spheres: Vec<_> = (0..200).map(|_| (rng.in_cube(), 0.1)).collect();
-    let spheres = Spheres::new(spheres);
-    let mut structure = build(spheres.expect("spheres"));
+    let spheres = Spheres::new(spheres).expect("spheres");
+    let mut structure = build(&spheres);
     let rays = pinhole(Vec3::new(0.0, 0.5, -3.0), Vec3::ZERO, 0.8, 300);
     check(&mut structure, &rays, "spheres");
 }
