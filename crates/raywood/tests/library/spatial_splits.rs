@@ -113,20 +113,21 @@ fn hits_are_the_same_to_the_bit() {
     let nasty = nasty::all().into_iter().map(|nasty| (nasty.name, nasty.mesh));
     for (name, mesh) in meshes.chain(nasty) {
         let (reference, mut bvh) = (uncut(&mesh), cut(&mesh));
+        let rays: Vec<Ray> = hard_rays(&mesh).into_iter().filter(Ray::is_valid).collect();
+        // In no order, so that no packets are made.
+        let mut rng = Rng::new(1);
+        let shuffled: Vec<Ray> = rays.iter().map(|_| rays[rng.below(rays.len())]).collect();
+        let expected: Vec<_> = shuffled.iter().map(|ray| reference.intersect(ray)).collect();
         for level in SimdLevel::available() {
             bvh.set_simd_level(level);
-            let rays: Vec<Ray> = hard_rays(&mesh).into_iter().filter(Ray::is_valid).collect();
-            // In no order, so that no packets are made.
-            let mut rng = Rng::new(1);
-            let shuffled: Vec<Ray> = rays.iter().map(|_| rays[rng.below(rays.len())]).collect();
             let mut hits = vec![None; shuffled.len()];
             bvh.intersect_batch(&shuffled, &mut hits);
             let mut blocked = vec![false; shuffled.len()];
             bvh.occluded_batch(&shuffled, &mut blocked);
-            for ((ray, hit), blocked) in shuffled.iter().zip(hits).zip(blocked) {
-                let expected = reference.intersect(ray);
-                assert_eq!(bvh.intersect(ray), expected, "{name}: {ray:?}");
-                let agrees = match (&hit, &expected) {
+            let answers = hits.into_iter().zip(blocked);
+            for ((ray, expected), (hit, blocked)) in shuffled.iter().zip(&expected).zip(answers) {
+                assert_eq!(bvh.intersect(ray), *expected, "{name}: {ray:?}");
+                let agrees = match (&hit, expected) {
                     (Some(hit), Some(expected)) => hit.agrees_with(expected),
                     (hit, expected) => hit == expected,
                 };
