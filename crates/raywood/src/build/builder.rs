@@ -33,8 +33,7 @@ pub enum Builder {
     /// Groups of neighbours along the curve become leaves, and what is above them is built as by `SahBinned`: much of the speed of the one, most of the quality of
     /// the other.
     Hlbvh,
-    /// From the bottom up: neighbours along the curve whose common box is smallest are merged, again and again. Trees about as good as those of `SahBinned`, in much less
-    /// time.
+    /// From the bottom up: neighbours along the curve whose common box is smallest are merged, again and again. Trees about as good as those of `SahBinned`, in less time.
     Ploc,
 }
 

@@ -124,7 +124,7 @@ fn usual_nodes(builder: Builder, max_leaf_size: usize) -> f64 {
     // Leaves come out half full or fuller; but where primitives lie far apart, the heuristic wants smaller ones.
     let half_full = 4.8 / max_leaf_size as f64;
     match builder {
-        Builder::SahSweep | Builder::SahBinned | Builder::Ploc => half_full.clamp(1.2, MOST_NODES),
+        Builder::SahSweep | Builder::SahBinned | Builder::Ploc => half_full.clamp(1.7, MOST_NODES),
         Builder::Midpoint | Builder::Median | Builder::Lbvh | Builder::Hlbvh => {
             half_full.min(MOST_NODES)
         }
@@ -202,10 +202,10 @@ fn wide(n: usize, options: &BuildOptions) -> PerPrimitive {
     }
     let nodes = usual_nodes(builder, max_leaf_size);
     // Blocks of eight are not full where primitives lie far apart.
-    let structure = match max_leaf_size {
-        ..4 => 92.0,
-        4..8 => 88.0,
-        _ => 72.0,
+    let structure = match builder {
+        _ if max_leaf_size < 4 => 92.0,
+        Builder::Lbvh if max_leaf_size >= 8 => 72.0,
+        _ => 88.0,
     };
     let (tree, plan) = (NODE * nodes + NUMBER, 20.0 * nodes);
     let peak = references * peak.max(tree + plan + structure);

@@ -17,20 +17,20 @@ pub struct BuildOptions {
     /// for primitives that overlap, so structures that divide space stop where dividing no longer pays.
     pub max_leaf_size: usize,
     /// The most primitives a leaf of the binary tree may hold from which the wide tree is made, at least 1. The wide tree puts leaves together again, up to
-    /// eight primitives; from smaller ones reinsertion makes slightly better trees, and takes longer.
+    /// eight primitives; from smaller ones come slightly better trees where reinsertion improves them, and that takes longer.
     pub wide_leaf_size: usize,
     /// Who builds the binary tree from which the wide tree is made.
     pub wide_builder: Builder,
     /// By which share, 0 to 4, the wide tree may have more references than there are primitives because large triangles are cut where that pays (spatial splits: Stich,
     /// Friedrich and Dietrich 2009). Traces up to a tenth faster where large triangles lie among small ones, takes several times as long to build, and more memory. 0 cuts nothing.
-    /// Only for triangles, and [`Builder::SahBinned`].
+    /// Only triangles are cut. Above 0 the binary tree is built as by [`Builder::SahBinned`], whatever `wide_builder` says.
     pub spatial_splits: f32,
     /// The estimated cost of visiting a node (`C_aabb`).
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
     pub primitive_cost: f32,
     /// How many passes at most improve a bounding volume hierarchy after it is built, by moving subtrees to where they cost less. A pass that gains next
-    /// to nothing is the last. `None` leaves it to the structure: four for the wide tree, none for the binary trees, which then show their builders.
+    /// to nothing is the last. `None` leaves it to the structure: four for scenes of instances, whose boxes overlap, none for all other trees.
     pub reinsertion_passes: Option<usize>,
     /// Which share of the nodes a pass of reinsertion tries to move, 0 to 1: the largest ones, which matter most. More gain a little more and take
     /// longer in proportion.
@@ -66,8 +66,8 @@ impl Default for BuildOptions {
         Self {
             bins: 16,
             max_leaf_size: 8,
-            wide_leaf_size: 4,
-            wide_builder: Builder::SahBinned,
+            wide_leaf_size: 8,
+            wide_builder: Builder::Ploc,
             spatial_splits: 0.0,
             node_cost: 1.0,
             primitive_cost: 1.0,

@@ -9,14 +9,14 @@ use super::{BuildOptions, Builder};
 pub enum BuildPreset {
     /// The wide tree along a space-filling curve: for scenes that change with every picture.
     Fastest,
-    /// Leaves along a space-filling curve, the heuristic above them.
+    /// The same, the largest nodes improved in two passes.
     Fast,
-    /// The default: the largest nodes improved in a few passes.
+    /// The default: neighbours merged from the bottom up.
     #[default]
     Balanced,
-    /// More bins, more nodes improved in more passes.
+    /// The same, the largest nodes improved as long as it pays.
     High,
-    /// Every node improved as long as it pays, and large triangles cut: for scenes that are traced for long.
+    /// The heuristic, every node improved as long as it pays, and large triangles cut: for scenes that are traced for long.
     Best,
 }
 
@@ -45,32 +45,29 @@ impl BuildPreset {
     /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` | `spatial_splits` |
     /// | --- | --- | ---: | ---: | --- | ---: | ---: |
     /// | `fastest` | `Lbvh` | 8 | | none | | |
-    /// | `fast` | `Hlbvh` | 4 | 16 | none | | |
-    /// | `balanced` | `SahBinned` | 4 | 16 | four for the wide tree, none for binary trees | 0.05 | 0 |
-    /// | `high` | `SahBinned` | 4 | 32 | up to 10 | 0.2 | 0 |
+    /// | `fast` | `Lbvh` | 8 | | up to 2 | 0.05 | |
+    /// | `balanced` | `Ploc` | 8 | | none; up to 4 for scenes of instances | 0.05 | |
+    /// | `high` | `Ploc` | 4 | | up to 6 | 0.05 | |
     /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 | 0.3 |
     pub fn options(self) -> BuildOptions {
         let balanced = BuildOptions::default();
         match self {
             Self::Fastest => BuildOptions {
                 wide_builder: Builder::Lbvh,
-                wide_leaf_size: 8,
                 reinsertion_passes: Some(0),
                 ..balanced
             },
             Self::Fast => BuildOptions {
-                wide_builder: Builder::Hlbvh,
-                reinsertion_passes: Some(0),
+                wide_builder: Builder::Lbvh,
+                reinsertion_passes: Some(2),
                 ..balanced
             },
             Self::Balanced => balanced,
-            Self::High => BuildOptions {
-                bins: 32,
-                reinsertion_passes: Some(10),
-                reinsertion_share: 0.2,
-                ..balanced
-            },
+            Self::High => {
+                BuildOptions { wide_leaf_size: 4, reinsertion_passes: Some(6), ..balanced }
+            }
             Self::Best => BuildOptions {
+                wide_builder: Builder::SahBinned,
                 bins: 32,
                 wide_leaf_size: 1,
                 reinsertion_passes: Some(20),

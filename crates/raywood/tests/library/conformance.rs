@@ -1,16 +1,17 @@
 //! Every query on friendly and nasty meshes against brute force in double precision.
 
-use raywood::{BuildOptions, Bvh, Hit, Ray};
+use raywood::{BuildOptions, BuildPreset, Builder, Bvh, Hit, Ray};
 use raywood_testkit::{nasty, oracle, rays};
 
 /// Options that make different trees over the same mesh.
 fn options() -> Vec<BuildOptions> {
     let default = BuildOptions::default();
-    vec![
-        default.clone(),
-        BuildOptions { max_leaf_size: 1, wide_leaf_size: 1, ..default.clone() },
-        BuildOptions { bins: 3, max_leaf_size: 64, primitive_cost: 0.01, ..default },
-    ]
+    let by_heuristic = BuildOptions { wide_builder: Builder::SahBinned, ..default.clone() };
+    let odd = [
+        BuildOptions { max_leaf_size: 1, wide_leaf_size: 1, ..default },
+        BuildOptions { bins: 3, max_leaf_size: 64, primitive_cost: 0.01, ..by_heuristic },
+    ];
+    BuildPreset::ALL.iter().map(|preset| preset.options()).chain(odd).collect()
 }
 
 #[test]

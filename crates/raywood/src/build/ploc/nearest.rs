@@ -5,8 +5,17 @@ use crate::build::{Cancelled, Work};
 use crate::simd::{Float, Kernel, Simd, dispatch_on};
 use crate::{SimdLevel, parallel};
 
-/// How far along the curve neighbours are looked for: as many to each side as a vector has lanes.
-const RADIUS: usize = 16;
+/// How far along the curve neighbours are looked for: what is within this distance fits a vector together with the cluster itself.
+const RADIUS: usize = 7;
+
+/// How many clusters before one its vector begins: the first lane is not asked.
+const BEFORE: usize = RADIUS + 1;
+
+/// The lanes of a vector that hold neighbours: those behind, and from the tenth on those ahead.
+const NEIGHBOURS: u32 = 0b1111_1110_1111_1110;
+
+/// How many lanes a vector has.
+const LANES: usize = 16;
 
 /// A thread looks for the neighbours of so many clusters at a time.
 const PIECE: usize = 1 << 12;
@@ -15,9 +24,9 @@ const PIECE: usize = 1 << 12;
 const BLOCK: usize = 256;
 
 /// The boxes of a block and of what is within the radius, in whole vectors.
-const COLUMN: usize = BLOCK + 2 * RADIUS;
+const COLUMN: usize = BLOCK + 2 * BEFORE;
 
-const _: () = assert!(RADIUS == 16 && COLUMN % 16 == 0);
+const _: () = assert!(2 * BEFORE == LANES && COLUMN.is_multiple_of(LANES));
 
 /// Writes for each cluster how far along the curve its nearest neighbour is: the one with which it has the smallest box, by surface area.
 ///
@@ -49,7 +58,7 @@ pub(super) fn pair_up(neighbours: &mut [i8]) {
 /// How far along the curve the cluster is with which one is paired; for the last of an odd number, which has none, the one before it.
 #[inline(always)]
 fn partner(place: usize, count: usize) -> i8 {
-    if place % 2 == 0 && place + 1 < count { 1 } else { -1 }
+    if place.is_multiple_of(2) && place + 1 < count { 1 } else { -1 }
 }
 
 /// The search for some clusters that follow each other.
@@ -70,19 +79,18 @@ impl Kernel for FindNearest<'_> {
             let start = first + number * BLOCK;
             fill(simd, &mut columns, clusters, start, neighbours.len());
             for (number, neighbour) in neighbours.iter_mut().enumerate() {
-                let own = number + RADIUS;
-                let behind = areas(simd, &columns, own, number);
-                let ahead = areas(simd, &columns, own, own + 1);
-                let least = behind.smaller(ahead).least();
+                let own = number + BEFORE;
+                let areas = areas(simd, &columns, own, number);
+                let least = simd.splat16(f32::INFINITY).replaced(NEIGHBOURS, areas).least();
 
-                // Those behind by distance, sixteen in the lowest bit; then those ahead, one in the lowest bit.
-                let bound = simd.splat16(least);
-                let (behind, ahead) = (behind.less_or_equal(bound), ahead.less_or_equal(bound));
+                // Those behind by distance, one in the last of eight bits; then those ahead, one in the first.
+                let nearest = areas.less_or_equal(simd.splat16(least)) & NEIGHBOURS;
+                let (behind, ahead) = (nearest & 0xff, nearest >> (BEFORE + 1));
                 let next_ahead = ahead.trailing_zeros() as i8 + 1;
-                let next_behind = 31 - behind.leading_zeros() as i8 - RADIUS as i8;
+                let next_behind = 31 - behind.leading_zeros() as i8 - BEFORE as i8;
                 let nearest = if ahead != 0 { next_ahead } else { next_behind };
                 let partner = partner(start + number, clusters.len());
-                let of_partner = if partner == 1 { ahead } else { behind >> (RADIUS - 1) };
+                let of_partner = if partner == 1 { ahead } else { behind >> RADIUS };
                 // Boxes too large to be measured are as near as what is beyond the ends.
                 let is_partner = of_partner & 1 != 0 || least == f32::INFINITY;
                 *neighbour = if is_partner { partner } else { nearest };
@@ -104,19 +112,21 @@ fn fill<S: Simd>(
         let (min, max) = (f32::NEG_INFINITY, f32::INFINITY);
         [min, min, min, min, max, max, max, max]
     };
-    for place in (0..count + 2 * RADIUS).step_by(RADIUS) {
-        let mut rows = [BEYOND; RADIUS];
-        // Of clusters that begin at the radius the first is the first.
-        let first = (start + place).wrapping_sub(RADIUS);
-        match clusters.get(first..).and_then(|clusters| clusters.first_chunk::<RADIUS>()) {
+    for place in (0..count + 2 * BEFORE).step_by(LANES) {
+        let mut rows = [BEYOND; LANES];
+        let first = (start + place).wrapping_sub(BEFORE);
+        match clusters.get(first..).and_then(|clusters| clusters.first_chunk::<LANES>()) {
             Some(clusters) => {
                 for (row, cluster) in rows.iter_mut().zip(clusters) {
                     *row = cluster.bounds().row();
                 }
             }
+            // At the ends. What would lie before the first cluster has a number beyond all.
             None => {
-                for (row, cluster) in rows.iter_mut().zip(clusters.iter().skip(first)) {
-                    *row = cluster.bounds().row();
+                for (lane, row) in rows.iter_mut().enumerate() {
+                    if let Some(cluster) = clusters.get(first.wrapping_add(lane)) {
+                        *row = cluster.bounds().row();
+                    }
                 }
             }
         }

@@ -12,7 +12,7 @@ mod partition;
 
 use super::driver::{self, Around, PARALLEL_SUBTREES, Set, Split, Splitter};
 use super::sah_binned::BinnedSah;
-use super::{Builder, Cancelled, PackedAabb, Primitive, Work};
+use super::{Cancelled, PackedAabb, Primitive, Work};
 use crate::structures::{Bvh2, Node};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, Vec3, parallel};
 use bins::best_cut;
@@ -27,7 +27,7 @@ pub(super) const COST: f64 = 1000.0;
 
 /// Whether the options ask for a wide tree in which triangles are cut.
 pub(super) fn is_asked_for(options: &BuildOptions) -> bool {
-    options.wide_builder == Builder::SahBinned && options.clamped().spatial_splits > 0.0
+    options.clamped().spatial_splits > 0.0
 }
 
 /// Builds the binary tree, in parallel. A primitive may lie in several leaves, whose boxes are around parts of it. The same for any number of threads.

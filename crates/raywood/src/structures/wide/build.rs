@@ -11,9 +11,6 @@ use crate::simd::{Arena, Part};
 use crate::structures::{AccelerationStructure, StructureKind};
 use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
 
-/// How often the binary tree is improved by reinsertion unless the options say it.
-const REINSERTION_PASSES: usize = 4;
-
 /// About how long planning takes, in the units of [`Bvh2::cost`].
 const PLAN_COST: f64 = 20.0;
 
@@ -27,7 +24,6 @@ const PARALLEL_LINES: usize = 1 << 13;
 pub(crate) fn binary_options(options: &BuildOptions) -> BuildOptions {
     BuildOptions {
         max_leaf_size: options.max_leaf_size.min(options.clamped().wide_leaf_size),
-        reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
         memory_limit: None,
         ..options.clone()
     }

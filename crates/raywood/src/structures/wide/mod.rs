@@ -49,7 +49,7 @@ use source::Source;
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
 /// [`SimdLevel`].
 ///
-/// It is made from a [binary tree](BuildOptions::wide_builder), by default one of the surface area heuristic, improved by [reinsertion](BuildOptions::reinsertion_passes), by the collapse that the heuristic finds best (Ylitie, Karras and Laine, "Efficient
+/// It is made from a [binary tree](BuildOptions::wide_builder), by default one whose neighbours were merged from the bottom up, if asked for improved by [reinsertion](BuildOptions::reinsertion_passes), by the collapse that the heuristic finds best (Ylitie, Karras and Laine, "Efficient
 /// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Batches are traced many rays at a time.
 /// Primitives that are no [triangles](Geometry::triangle) are tested one by one.
 #[derive(Clone, Debug, PartialEq)]
