@@ -13,6 +13,11 @@ pub enum BuildError {
         /// How many there are.
         primitives: usize,
     },
+    /// A wide tree larger than its references reach, which is [`BuildError::MAX_TREE_BYTES`].
+    TreeTooLarge {
+        /// How large it would be.
+        bytes: usize,
+    },
     /// A primitive has a box that is empty, NaN or infinite.
     BadBounds {
         /// The first such primitive.
@@ -34,11 +39,20 @@ pub enum BuildError {
 impl BuildError {
     /// The most primitives that a structure takes: with 2N-1 nodes, 32 bits still number every node.
     pub const MAX_PRIMITIVES: usize = 1 << 31;
+
+    /// The most memory that the nodes and leaves of a wide tree take, about 4 GiB: 26 bits number their cache lines. Enough for some 75 million triangles.
+    pub const MAX_TREE_BYTES: usize = 64 * ((1 << 26) - 1);
 }
 
 impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::TreeTooLarge { bytes } => write!(
+                f,
+                "the wide tree would take {bytes} bytes, but it can have at most {}; divide the geometry among several trees in a scene of instances, \
+                 or choose another structure",
+                Self::MAX_TREE_BYTES
+            ),
             Self::TooManyPrimitives { primitives } => {
                 write!(
                     f,

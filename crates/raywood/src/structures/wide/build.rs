@@ -50,7 +50,7 @@ pub(super) fn build<G: Geometry>(
         _ => BLOCK_LINES,
     };
     if lines > Reference::LINES {
-        return Err(BuildError::TooManyPrimitives { primitives: geometry.len() });
+        return Err(BuildError::TreeTooLarge { bytes: lines.saturating_mul(64) });
     }
     // Now it is known how large the tree becomes: scenes can be made in which it is larger than was to be expected.
     BuildMemory::check_lists(tree.bytes() + plan.bytes() + 64 * lines, geometry.len(), allowed)?;

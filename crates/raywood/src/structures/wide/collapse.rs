@@ -88,8 +88,9 @@ impl Plan {
         work.check()?;
         let mut plan = Self { choices };
         if !tree.nodes().is_empty() && !plan.is_leaf(0) {
-            plan.count_lines(tree, parts, 0, counting)?;
+            plan.count_lines(tree, parts, 0, counting.without_progress())?;
         }
+        counting.done()?;
         Ok(plan)
     }
 
@@ -105,13 +106,12 @@ impl Plan {
         let mut lines = BLOCK_LINES * self.sharing(tree, parts, &children).blocks;
         for child in children.numbers() {
             if !self.is_leaf(child) {
-                let below = self.count_lines(tree, parts, child, work.without_progress())?;
-                lines += NODE_LINES + below;
+                lines += NODE_LINES + self.count_lines(tree, parts, child, work)?;
             }
         }
         self.choices[number].lines_below = u32::try_from(lines).unwrap_or(u32::MAX);
         if lines > MANY_LINES {
-            work.check()?;
+            work.ask()?;
         }
         Ok(lines)
     }

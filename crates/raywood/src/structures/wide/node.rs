@@ -1,6 +1,6 @@
 //! The node of sixteen children, and what refers to nodes and leaves.
 
-use crate::{Aabb, Vec3};
+use crate::{Aabb, BuildError, Vec3};
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 16;
@@ -70,8 +70,8 @@ impl Reference {
     /// Nothing: of a tree without primitives, of a child that is not there, and the end of a stack.
     pub(super) const NOTHING: Self = Self(u32::MAX);
 
-    /// Numbers of cache lines lie below this: 4 GiB.
-    pub(super) const LINES: usize = (1 << 26) - 1;
+    /// Numbers of cache lines lie below this.
+    pub(super) const LINES: usize = BuildError::MAX_TREE_BYTES / 64;
 
     pub(super) fn node(line: usize) -> Self {
         Self((line as u32) << 6)
