@@ -81,8 +81,6 @@ pub(crate) struct Library {
     functions: Functions,
     name: String,
     held: Box<Held>,
-    /// Last, so that the functions are there until all else is gone.
-    _code: libloading::Library,
 }
 
 // SAFETY: Embree's manual: devices and scenes may be used from several threads at a time; what changes them takes `&mut` or happens before
@@ -144,7 +142,9 @@ impl Library {
         let held = Box::<Held>::default();
         // SAFETY: the device lives; what it is given lives in a box of its own until after the device.
         unsafe { (functions.set_memory_monitor)(device.as_ptr(), count, &raw const *held) };
-        let library = Self { device, functions, name, held, _code: code };
+        // Its code stays for good: threads of its own end some time after the device is released, and would find nothing there.
+        std::mem::forget(code);
+        let library = Self { device, functions, name, held };
         // Version 3 has the same names for functions that take other arguments.
         if version / 10_000 != 4 {
             return Err(complain(&format_args!("is Embree {}, expected 4", library.name)));
