@@ -5,6 +5,7 @@
 use rayon::prelude::*;
 
 use crate::build::{Cancelled, Work};
+use crate::simd::huge_pages;
 use crate::{HitColumnsMut, Vec3};
 
 /// How many items a task handles at least: enough that handing it out costs nothing in comparison.
@@ -66,7 +67,7 @@ pub(crate) fn map_watched<T: Send>(
     work: Work<'_>,
     f: impl Fn(usize) -> T + Send + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let mut results = Vec::with_capacity(n);
+    let mut results = huge_pages::vec_for(n);
     work.in_stretches(n, |stretch| {
         #[cfg(feature = "rayon")]
         results.par_extend(stretch.into_par_iter().with_min_len(GRAIN).map(&f));
@@ -129,6 +130,34 @@ pub(crate) fn fold_numbers<A: Copy + Send + Sync>(
         let pieces: Vec<A> = pieces.into_par_iter().map(fold_piece).collect();
         #[cfg(not(feature = "rayon"))]
         let pieces = pieces.map(fold_piece);
+        pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
+    })?;
+    Ok(whole)
+}
+
+/// Writes what `step` returns for each number from 0 on to its place, and folds the numbers as [`fold_numbers`] does.
+pub(crate) fn fill_and_fold<T: Send, A: Copy + Send + Sync>(
+    places: &mut [T],
+    work: Work<'_>,
+    start: A,
+    step: impl Fn(&mut A, usize) -> T + Sync,
+    merge: impl Fn(&mut A, &A) + Sync,
+) -> Result<A, Cancelled> {
+    let mut whole = start;
+    work.in_stretches(places.len(), |stretch| {
+        let first = stretch.start;
+        let fill_piece = |(piece, places): (usize, &mut [T])| {
+            let mut accumulator = start;
+            for (place, number) in places.iter_mut().zip(first + piece * GRAIN..) {
+                *place = step(&mut accumulator, number);
+            }
+            accumulator
+        };
+        #[cfg(feature = "rayon")]
+        let pieces: Vec<A> =
+            places[stretch].par_chunks_mut(GRAIN).enumerate().map(fill_piece).collect();
+        #[cfg(not(feature = "rayon"))]
+        let pieces = places[stretch].chunks_mut(GRAIN).enumerate().map(fill_piece);
         pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
     })?;
     Ok(whole)

@@ -94,7 +94,7 @@ impl Bvh2 {
         options: &BuildOptions,
         work: Work<'_>,
     ) -> Result<Self, BuildError> {
-        if !spatial::is_asked_for(options) {
+        if !options.cuts_triangles() {
             return Self::build_in(options.wide_builder, geometry, options, work);
         }
         let [building, improving] = work.shares([spatial::COST, reinsertion::cost(options)]);
@@ -104,7 +104,7 @@ impl Bvh2 {
 
     /// About how long [`build_for_wide`](Self::build_for_wide) takes, in units in which reinsertion links the nodes of the tree in one.
     pub(crate) fn cost_for_wide(options: &BuildOptions) -> f64 {
-        let building = match spatial::is_asked_for(options) {
+        let building = match options.cuts_triangles() {
             true => spatial::COST,
             false => options.wide_builder.cost(),
         };

@@ -1,27 +1,95 @@
 //! The order of primitives along a space-filling curve.
 
-use super::driver::{Around, around_all};
+use super::driver::Around;
 use super::morton::{Morton, NUMBER_BITS};
 use super::radix_sort::sort_above;
-use super::{PackedAabb, Work};
+use super::{PackedAabb, Primitive, Work};
+use crate::simd::huge_pages;
 use crate::{BuildError, Geometry, parallel};
+
+/// So many primitives, from the first to the last, tell beforehand where about all centres lie.
+const SAMPLES: usize = 4096;
+
+/// One of so many primitives may lie outside of where they were expected. These fall into the cells at the sides.
+const OUTSIDE: usize = 128;
 
 /// All primitives along the curve: for each the code of its centre, and its number; and what is around all, whose bounds are checked. O(n), in parallel, the same
 /// for any number of threads.
-pub(super) fn sorted_keys<G: Geometry>(
+pub(crate) fn sorted_keys<G: Geometry>(
     geometry: &G,
     work: Work<'_>,
 ) -> Result<(Vec<u64>, Around), BuildError> {
-    let [bounding, encoding, sorting] = work.shares([1.0, 2.0, 1.5]);
-    let around = around_all(geometry, bounding)?;
-    if geometry.is_empty() {
-        return Ok((Vec::new(), around));
+    let primitives = geometry.len();
+    if primitives > BuildError::MAX_PRIMITIVES {
+        return Err(BuildError::TooManyPrimitives { primitives });
     }
-    let morton = Morton::new(&around.centers);
-    let key = |primitive: usize| key(geometry, &morton, primitive as u32);
-    let mut keys = parallel::map_watched(geometry.len(), encoding, key)?;
+    if primitives == 0 {
+        return Ok((Vec::new(), Around::NOTHING));
+    }
+    let [encoding, encoding_anew, sorting] = work.shares([2.0, 1.0, 1.5]);
+    let mut keys = huge_pages::zeros(primitives);
+    // Codes count cells of a box around nearly all centres. Most scenes need not be looked at twice, for a few primitives tell where that lies; and where it leaves
+    // out what is far away, such as the ground around a house, cells are finer.
+    let expected = expected_centers(geometry);
+    let (around, outside) = encode(geometry, &expected, &mut keys, encoding)?;
+    if outside <= primitives / OUTSIDE {
+        encoding_anew.done()?;
+    } else {
+        let morton = Morton::new(&around.centers);
+        let key = |_: &mut (), place| key(geometry, &morton, place as u32);
+        parallel::fill_and_fold(&mut keys, encoding_anew, (), key, |(), ()| ())?;
+    }
     sort_above(NUMBER_BITS, &mut keys, sorting)?;
     Ok((keys, around))
+}
+
+/// About where all centres lie.
+fn expected_centers<G: Geometry>(geometry: &G) -> PackedAabb {
+    let primitives = geometry.len();
+    let samples = primitives.min(SAMPLES);
+    let centers = (0..samples).map(|sample| {
+        let bounds = geometry.bounds((sample * primitives / samples) as u32);
+        PackedAabb::from(bounds).center()
+    });
+    centers.fold(PackedAabb::EMPTY, PackedAabb::including)
+}
+
+/// Writes the keys of all primitives, whose centres are expected in a box. Tells what is around them, whose bounds are checked, and how many centres lie outside.
+fn encode<G: Geometry>(
+    geometry: &G,
+    expected: &PackedAabb,
+    keys: &mut [u64],
+    work: Work<'_>,
+) -> Result<(Around, usize), BuildError> {
+    let morton = Morton::new(expected);
+    let start = (Around::NOTHING, 0, usize::MAX);
+    let (around, outside, first_bad) = parallel::fill_and_fold(
+        keys,
+        work,
+        start,
+        |(around, outside, first_bad), number| {
+            let bounds = PackedAabb::from(geometry.bounds(number as u32));
+            if !bounds.is_sound() {
+                *first_bad = number.min(*first_bad);
+            }
+            let primitive = Primitive::new(number as u32, bounds);
+            around.include(&primitive);
+            *outside += usize::from(!expected.contains(primitive.center()));
+            morton.key(primitive.center(), number as u32)
+        },
+        |(around, outside, first_bad), piece| {
+            around.grow(&piece.0);
+            *outside += piece.1;
+            *first_bad = piece.2.min(*first_bad);
+        },
+    )?;
+    match first_bad {
+        usize::MAX => Ok((around, outside)),
+        number => {
+            let primitive = number as u32;
+            Err(BuildError::BadBounds { primitive, bounds: geometry.bounds(primitive) })
+        }
+    }
 }
 
 /// The code of a primitive's centre, and its number.

@@ -42,7 +42,7 @@ pub(crate) struct Set<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Around {
     /// The box around their boxes.
-    pub(super) bounds: PackedAabb,
+    pub(crate) bounds: PackedAabb,
     /// The box around the centres of these.
     pub(super) centers: PackedAabb,
 }
@@ -97,38 +97,6 @@ pub(crate) fn primitive_bounds<G: Geometry>(
     map_bounds(geometry, work, |_, bounds| bounds)
 }
 
-/// What is around all primitives, whose bounds are checked. Keeps nothing of each: for those who would rather ask the geometry again.
-pub(super) fn around_all<G: Geometry>(geometry: &G, work: Work<'_>) -> Result<Around, BuildError> {
-    let primitives = geometry.len();
-    if primitives > BuildError::MAX_PRIMITIVES {
-        return Err(BuildError::TooManyPrimitives { primitives });
-    }
-    let start = (Around::NOTHING, usize::MAX);
-    let (around, first_bad) = parallel::fold_numbers(
-        primitives,
-        work,
-        start,
-        |(around, first_bad), number| {
-            let bounds = geometry.bounds(number as u32);
-            if bounds.is_empty() || !bounds.is_finite() {
-                *first_bad = number.min(*first_bad);
-            }
-            around.include(&Primitive::new(number as u32, bounds.into()));
-        },
-        |(around, first_bad), piece| {
-            around.grow(&piece.0);
-            *first_bad = piece.1.min(*first_bad);
-        },
-    )?;
-    match first_bad {
-        usize::MAX => Ok(around),
-        number => {
-            let primitive = number as u32;
-            Err(BuildError::BadBounds { primitive, bounds: geometry.bounds(primitive) })
-        }
-    }
-}
-
 /// Every primitive, its bounds checked.
 pub(super) fn primitives<G: Geometry>(
     geometry: &G,
@@ -149,11 +117,11 @@ fn map_bounds<G: Geometry, T: Send>(
     }
     let first_bad = AtomicUsize::new(usize::MAX);
     let mapped = parallel::map_watched(primitives, work, |primitive| {
-        let bounds = geometry.bounds(primitive as u32);
-        if bounds.is_empty() || !bounds.is_finite() {
+        let bounds = PackedAabb::from(geometry.bounds(primitive as u32));
+        if !bounds.is_sound() {
             first_bad.fetch_min(primitive, Ordering::Relaxed);
         }
-        f(primitive as u32, bounds.into())
+        f(primitive as u32, bounds)
     })?;
     match first_bad.into_inner() {
         usize::MAX => Ok(mapped),

@@ -1,6 +1,6 @@
 //! How much memory a build takes, told before it begins: the lists that are held at the same time, stage by stage.
 
-use super::{BuildOptions, Builder, driver, spatial};
+use super::{BuildOptions, Builder, driver};
 use crate::structures::wide;
 use crate::{BuildError, Node, StructureKind, parallel};
 
@@ -189,11 +189,14 @@ fn binary(builder: Builder, n: usize, options: &BuildOptions) -> PerPrimitive {
 
 /// A wide tree, made from a binary one.
 fn wide(n: usize, options: &BuildOptions) -> PerPrimitive {
+    if wide::linear::is_asked_for(options) {
+        return linear(n, options);
+    }
     let options = wide::binary_options(options);
     let (builder, max_leaf_size) = (options.wide_builder, options.max_leaf_size);
     let PerPrimitive { mut peak, .. } = binary(builder, n, &options);
     // Where triangles are cut there may be so many references for each, whose boxes are there until all pieces are put together.
-    let references = match spatial::is_asked_for(&options) {
+    let references = match options.cuts_triangles() {
         true => 1.0 + f64::from(options.spatial_splits),
         false => 1.0,
     };
@@ -201,15 +204,33 @@ fn wide(n: usize, options: &BuildOptions) -> PerPrimitive {
         peak += BOX;
     }
     let nodes = usual_nodes(builder, max_leaf_size);
-    // Blocks of eight are not full where primitives lie far apart.
-    let structure = match builder {
-        _ if max_leaf_size < 4 => 92.0,
-        Builder::Lbvh if max_leaf_size >= 8 => 72.0,
-        _ => 88.0,
-    };
+    let structure = wide_structure(builder, max_leaf_size);
     let (tree, plan) = (NODE * nodes + NUMBER, 20.0 * nodes);
     let peak = references * peak.max(tree + plan + structure);
     PerPrimitive { peak, structure: references * structure }
+}
+
+/// A wide tree, made along the curve.
+fn linear(n: usize, options: &BuildOptions) -> PerPrimitive {
+    let leaves = 0.5 * usual_nodes(Builder::Lbvh, options.wide_leaf_size);
+    let structure = wide_structure(Builder::Lbvh, options.wide_leaf_size);
+    // Where leaves start, and their boxes; for every few of them a branch, and room for a node that may not be needed.
+    let tree = leaves * (NUMBER + BOX) + leaves / 8.0 * (40.0 + 448.0);
+    // Each thread reads the corners of a piece, three of four numbers.
+    let in_pieces = (driver::PARALLEL_SUBTREES * parallel::threads()) as f64;
+    let corners = 48.0 * (in_pieces / n as f64).min(1.0);
+    let peak = (2.0 * KEY).max(KEY + tree + corners + structure);
+    PerPrimitive { peak, structure }
+}
+
+/// How much a wide tree takes for each primitive.
+fn wide_structure(builder: Builder, max_leaf_size: usize) -> f64 {
+    // Blocks of eight are not full where primitives lie far apart.
+    match builder {
+        _ if max_leaf_size < 4 => 92.0,
+        Builder::Lbvh if max_leaf_size >= 8 => 72.0,
+        _ => 88.0,
+    }
 }
 
 /// A grid of `density` cells a primitive and eight references at most.

@@ -22,13 +22,17 @@ mod sah_binned;
 mod sah_small;
 mod sah_sweep;
 mod spatial;
+mod stretch;
 mod work;
 
 pub use builder::Builder;
+pub(crate) use curve::sorted_keys;
 pub use memory::BuildMemory;
+pub(crate) use morton::number as number_in_key;
 pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;
 pub use preset::BuildPreset;
 pub(crate) use primitive::Primitive;
 pub(crate) use spatial::margin as part_margin;
+pub(crate) use stretch::Stretch;
 pub(crate) use work::{Cancelled, Work, watched};

@@ -48,8 +48,10 @@ impl Morton {
         for (bit, &axis) in axes.iter().enumerate() {
             let (half, bit_of_half) = (placed[axis] / 8, placed[axis] % 8);
             placed[axis] += 1;
-            for (value, code) in spread[axis][half].iter_mut().enumerate() {
-                *code |= (value as u64 >> bit_of_half & 1) << (bit as u32 + NUMBER_BITS);
+            // Values with this bit, of which it is the highest, are those without it once more.
+            let (without, with) = spread[axis][half].split_at_mut(1 << bit_of_half);
+            for (code, without) in with.iter_mut().zip(without) {
+                *code = *without | 1 << (bit as u32 + NUMBER_BITS);
             }
         }
         let cells = |axis: usize| (1u32 << bits[axis]) as f32;
@@ -80,7 +82,7 @@ impl Morton {
 
 /// The number of the primitive in the lower bits of a key.
 #[inline(always)]
-pub(super) fn number(key: u64) -> u32 {
+pub(crate) fn number(key: u64) -> u32 {
     (key & ((1 << NUMBER_BITS) - 1)) as u32
 }
 

@@ -19,7 +19,8 @@ pub struct BuildOptions {
     /// The most primitives a leaf of the binary tree may hold from which the wide tree is made, at least 1. The wide tree puts leaves together again, up to
     /// eight primitives; from smaller ones come slightly better trees where reinsertion improves them, and that takes longer.
     pub wide_leaf_size: usize,
-    /// Who builds the binary tree from which the wide tree is made.
+    /// Who builds the binary tree from which the wide tree is made. With [`Builder::Lbvh`], no passes of reinsertion and nothing cut there is none: the wide tree is made
+    /// from the order on the curve at once, in half of the time.
     pub wide_builder: Builder,
     /// By which share, 0 to 4, the wide tree may have more references than there are primitives because large triangles are cut where that pays (spatial splits: Stich,
     /// Friedrich and Dietrich 2009). Traces up to a tenth faster where large triangles lie among small ones, takes several times as long to build, and more memory. 0 cuts nothing.
@@ -114,6 +115,11 @@ impl BuildOptions {
             triangle_test: self.triangle_test,
             memory_limit: self.memory_limit,
         }
+    }
+
+    /// Whether triangles are cut for the wide tree.
+    pub(crate) fn cuts_triangles(&self) -> bool {
+        self.clamped().spatial_splits > 0.0
     }
 
     /// Whether dividing a set of `count` primitives costs less than a leaf over it; `split_cost` is `N_l*A_l + N_r*A_r` in half areas.

@@ -19,14 +19,14 @@ impl PackedAabb {
 
     /// The box with a number in the lane that means nothing. Numbers are kept from looking like denormal floats, with which some processors are slow.
     #[inline(always)]
-    pub(super) fn with_tag(mut self, number: u32) -> Self {
+    pub(crate) fn with_tag(mut self, number: u32) -> Self {
         self.min[3] = f32::from_bits(number.wrapping_add(TAG_OFFSET));
         self
     }
 
     /// The number that was put into the lane that means nothing.
     #[inline(always)]
-    pub(super) fn tag(&self) -> u32 {
+    pub(crate) fn tag(&self) -> u32 {
         self.min[3].to_bits().wrapping_sub(TAG_OFFSET)
     }
 
@@ -71,10 +71,28 @@ impl PackedAabb {
         self.union(Self { min, max })
     }
 
+    /// Whether all coordinates are finite and the box is not empty: as [`Aabb::is_finite`] and [`Aabb::is_empty`] say, in fewer instructions.
+    #[inline(always)]
+    pub(super) fn is_sound(&self) -> bool {
+        // Half of the length does not overflow; it is not a number, or infinite, where a coordinate is.
+        let sound = |axis: usize| {
+            let half = 0.5 * self.max[axis] - 0.5 * self.min[axis];
+            (self.min[axis] <= self.max[axis]) & (half < f32::INFINITY)
+        };
+        sound(0) & sound(1) & sound(2) & sound(3)
+    }
+
     /// Whether it holds no point: as [`Aabb::is_empty`].
     #[inline(always)]
     pub(super) fn is_empty(&self) -> bool {
         Aabb::from(*self).is_empty()
+    }
+
+    /// Whether it holds a point.
+    #[inline(always)]
+    pub(super) fn contains(&self, point: [f32; 4]) -> bool {
+        let holds = |axis: usize| (self.min[axis] <= point[axis]) & (point[axis] <= self.max[axis]);
+        holds(0) & holds(1) & holds(2)
     }
 
     /// The centre. Does not overflow.

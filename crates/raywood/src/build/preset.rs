@@ -7,9 +7,9 @@ use super::{BuildOptions, Builder};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum BuildPreset {
-    /// The wide tree along a space-filling curve: for scenes that change with every picture.
+    /// The wide tree straight from the order along a space-filling curve: for scenes that change with every picture.
     Fastest,
-    /// The same, the largest nodes improved in two passes.
+    /// From a binary tree along the curve, the largest nodes improved in two passes.
     Fast,
     /// The default: neighbours merged from the bottom up.
     #[default]

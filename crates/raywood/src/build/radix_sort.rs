@@ -2,6 +2,7 @@
 
 use super::{Cancelled, Work};
 use crate::parallel;
+use crate::simd::huge_pages;
 
 /// How many bits a digit has.
 const DIGIT_BITS: u32 = 11;
@@ -28,7 +29,7 @@ pub(super) fn sort_above(
         numbers.sort_unstable();
         return work.done();
     }
-    let mut moved = vec![0; numbers.len()];
+    let mut moved = huge_pages::zeros(numbers.len());
     let shifts = (bits..u64::BITS).step_by(DIGIT_BITS as usize);
     let pass = work.part(1, shifts.len());
     for shift in shifts {

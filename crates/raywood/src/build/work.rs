@@ -4,7 +4,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-use crate::BuildError;
+use crate::{BuildError, parallel};
 
 /// The units of work of a whole build. Shares are rounded down to units, so many that nobody sees it.
 const WHOLE: u64 = 1 << 40;
@@ -156,10 +156,12 @@ impl Work<'_> {
     }
 
     /// So many copies of a value: of large lists it takes a while until all pages are there.
-    pub(crate) fn copies<T: Clone>(self, value: T, n: usize) -> Result<Vec<T>, Cancelled> {
-        let mut copies = Vec::with_capacity(n);
-        self.in_stretches(n, |stretch| copies.resize(stretch.end, value.clone()))?;
-        Ok(copies)
+    pub(crate) fn copies<T: Copy + Send + Sync>(
+        self,
+        value: T,
+        n: usize,
+    ) -> Result<Vec<T>, Cancelled> {
+        parallel::map_watched(n, self, |_| value)
     }
 }
 

@@ -50,6 +50,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn prefetch(&self, primitive: u32) {
+        match self.in_second(primitive) {
+            None => self.first.prefetch(primitive),
+            Some(primitive) => self.second.prefetch(primitive),
+        }
+    }
+
     fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
         match self.in_second(primitive) {
             None => self.first.bounding_ball(primitive),

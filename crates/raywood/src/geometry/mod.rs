@@ -75,6 +75,12 @@ pub trait Geometry: Sync {
         None
     }
 
+    /// Asks for what [`bounds`](Self::bounds) and [`triangle`](Self::triangle) will read first of a primitive to be fetched from memory: builds
+    /// do so some primitives ahead where these lie all over the memory. It changes nothing but how long that takes. The default does nothing.
+    fn prefetch(&self, primitive: u32) {
+        let _ = primitive;
+    }
+
     /// The centre and radius of a ball that holds the primitive, so that rays that pass by it need not ask [`intersect`](Self::intersect). Not asked of
     /// [triangles](Self::triangle).
     ///
@@ -168,6 +174,11 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline(always)]
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         (**self).triangle(primitive)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, primitive: u32) {
+        (**self).prefetch(primitive);
     }
 
     fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {

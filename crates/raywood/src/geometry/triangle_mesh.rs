@@ -6,6 +6,7 @@ use super::clip::clipped_triangle_bounds;
 use super::separation::triangle_overlaps;
 use super::watertight::intersect_triangle;
 use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use crate::simd::prefetch_item;
 use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Triangles as triples of indices into an array of vertex positions. Checked once, when made: every index is in
@@ -148,6 +149,11 @@ impl Geometry for TriangleMesh {
     #[inline(always)]
     fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
         Some(self.corners(primitive))
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, primitive: u32) {
+        prefetch_item(&self.triangles, primitive as usize);
     }
 
     fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {

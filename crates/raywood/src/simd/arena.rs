@@ -4,6 +4,8 @@
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use super::huge_pages;
+
 /// Plain numbers that fill whole cache lines.
 ///
 /// # Safety
@@ -35,17 +37,32 @@ impl Arena {
     /// So many lines, which `fill` fills, and what that returns; `None` if it [abandons](Part::abandon) any of them. Lines that it leaves alone are zeros. Memory is touched for the first time where it is filled,
     /// by the thread that does so: a page fault costs more than filling a page.
     pub(crate) fn filled<R>(lines: usize, fill: impl FnOnce(Part<'_>) -> R) -> Option<(Self, R)> {
-        let mut all = Vec::with_capacity(lines);
-        huge_pages::ask_for(all.spare_capacity_mut());
+        Self::with_room_for(lines).extended(lines, fill)
+    }
+
+    /// No lines yet, with room for so many.
+    pub(crate) fn with_room_for(lines: usize) -> Self {
+        Self(huge_pages::vec_for(lines))
+    }
+
+    /// So many lines more, which `fill` fills as those of [`filled`](Self::filled) are. If there is no room for them, everything moves to where there is.
+    pub(crate) fn extended<R>(
+        self,
+        lines: usize,
+        fill: impl FnOnce(Part<'_>) -> R,
+    ) -> Option<(Self, R)> {
+        let Self(mut all) = self;
+        all.reserve_exact(lines);
+        let first = all.len();
         let is_abandoned = AtomicBool::new(false);
         let room = &mut all.spare_capacity_mut()[..lines];
-        let result = fill(Part { lines: room, first: 0, is_abandoned: &is_abandoned });
+        let result = fill(Part { lines: room, first, is_abandoned: &is_abandoned });
         if is_abandoned.into_inner() {
             return None;
         }
         // SAFETY: there is room for as many lines. Every line belonged to a part, and parts write all their lines, when asked to or when they are dropped, as none is
         // abandoned; whoever fills arenas forgets none.
-        unsafe { all.set_len(lines) };
+        unsafe { all.set_len(first + lines) };
         Some((Self(all), result))
     }
 
@@ -92,7 +109,7 @@ pub(crate) struct Part<'a> {
     is_abandoned: &'a AtomicBool,
 }
 
-impl Part<'_> {
+impl<'a> Part<'a> {
     /// The number of its first line.
     pub(crate) fn first(&self) -> usize {
         self.first
@@ -128,6 +145,23 @@ impl Part<'_> {
         unsafe { lines.as_mut_ptr().cast::<T>().write(thing) }
     }
 
+    /// The same of a thing that is still to be written to.
+    ///
+    /// # Panics
+    ///
+    /// As [`put`](Self::put).
+    #[inline(always)]
+    pub(crate) fn put_default<T: Lines + Default>(&mut self) -> &'a mut T {
+        let mut part = self.take(size_of::<T>() / 64);
+        let lines = std::mem::take(&mut part.lines);
+        let thing = lines.as_mut_ptr().cast::<T>();
+        // SAFETY: the lines are as large as the thing and as well aligned; they are borrowed from the arena, whose lines no other part has.
+        unsafe {
+            thing.write(T::default());
+            &mut *thing
+        }
+    }
+
     /// Gives up the whole arena: nothing more need be written.
     pub(crate) fn abandon(self) {
         self.is_abandoned.store(true, Relaxed);
@@ -143,35 +177,6 @@ impl Drop for Part<'_> {
             line.write(Line([0; 16]));
         }
     }
-}
-
-/// Pages of 2 MiB for large arenas: fewer faults while they are filled, fewer misses while they are traced.
-mod huge_pages {
-    use std::mem::MaybeUninit;
-
-    /// Asks the system to use huge pages for the memory, which may be in use or not, as far as it can.
-    #[cfg(target_os = "linux")]
-    pub(super) fn ask_for<T>(memory: &mut [MaybeUninit<T>]) {
-        use std::ffi::{c_int, c_void};
-
-        unsafe extern "C" {
-            fn madvise(start: *mut c_void, length: usize, advice: c_int) -> c_int;
-        }
-        const MADV_HUGEPAGE: c_int = 14;
-        const HUGE_PAGE: usize = 2 << 20;
-
-        let start = memory.as_mut_ptr().cast::<u8>();
-        let before = start.align_offset(HUGE_PAGE);
-        let length = size_of_val(memory).saturating_sub(before) & !(HUGE_PAGE - 1);
-        if length > 0 {
-            // SAFETY: the pages lie within the memory, and the advice changes nothing but how fast they are. Where the system knows no such pages it answers with an
-            // error, which nobody needs.
-            unsafe { madvise(start.wrapping_add(before).cast(), length, MADV_HUGEPAGE) };
-        }
-    }
-
-    #[cfg(not(target_os = "linux"))]
-    pub(super) fn ask_for<T>(_: &mut [MaybeUninit<T>]) {}
 }
 
 #[cfg(test)]
@@ -198,6 +203,27 @@ mod tests {
             let expected = if line == 10 { block } else { TriangleBlock::default() };
             assert_eq!(*arena.get::<TriangleBlock>(line), expected, "line {line}");
         }
+    }
+
+    #[test]
+    fn lines_are_added_with_room_for_them_or_without() {
+        for room in [0, 5, 20] {
+            let (arena, ()) = Arena::with_room_for(room)
+                .extended(5, |mut all| *all.put_default() = block_of(1))
+                .and_then(|(arena, ())| {
+                    arena.extended(5, |mut more| more.put(block_of(more.first() as u32)))
+                })
+                .expect("nothing is abandoned");
+            assert_eq!(arena.len(), 10);
+            assert_eq!(*arena.get::<TriangleBlock>(0), block_of(1));
+            assert_eq!(*arena.get::<TriangleBlock>(5), block_of(5));
+        }
+    }
+
+    fn block_of(primitive: u32) -> TriangleBlock {
+        let mut block = TriangleBlock::default();
+        block.set(0, primitive, [crate::Vec3::ONE; 3]);
+        block
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod arena;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+pub(crate) mod huge_pages;
 mod level;
 mod portable;
 mod vector;
@@ -34,6 +35,19 @@ pub(crate) fn as_rows(rays: &[Ray; 16]) -> &[[f32; 8]; 16] {
     const _: () = assert!(size_of::<Ray>() == size_of::<[f32; 8]>());
     // SAFETY: a ray is made of eight numbers, in the order of their declaration and with nothing between them, for their sizes add up.
     unsafe { &*std::ptr::from_ref(rays).cast() }
+}
+
+/// Asks for the cache line of an item to be fetched soon; of one that is not there, for nothing.
+#[inline(always)]
+pub(crate) fn prefetch_item<T>(items: &[T], place: usize) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch reads nothing, whatever the address, and every x86-64 processor has it.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(items.as_ptr().wrapping_add(place).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (items, place);
 }
 
 /// Work that is compiled for every level.

@@ -13,23 +13,26 @@ struct Merge(PackedAabb);
 
 /// All merges, in the order in which they were made.
 pub(super) struct Merges {
+    /// Those that were made, and room for the others.
     merges: Vec<Merge>,
     /// How many primitives each has.
     sizes: Vec<u32>,
+    /// How many were made.
+    made: usize,
     /// How many primitives there are, whose numbers come before those of merges.
     primitives: usize,
 }
 
 impl Merges {
-    /// None, with room for all that so many primitives need.
-    pub(super) fn with_capacity(primitives: usize) -> Self {
-        let (merges, sizes) = (Vec::with_capacity(primitives), Vec::with_capacity(primitives));
-        Self { merges, sizes, primitives }
+    /// None, with room for all that so many primitives need. That is touched here, in parallel: page by page, as merges are made, would take longer.
+    pub(super) fn with_room(primitives: usize, work: Work<'_>) -> Result<Self, Cancelled> {
+        let merges = work.copies(Merge(PackedAabb::EMPTY), primitives)?;
+        Ok(Self { merges, sizes: work.copies(0, primitives)?, made: 0, primitives })
     }
 
     /// The cluster that was made last: with the last of all merges that of all primitives.
     pub(super) fn last(&self) -> Id {
-        (self.primitives + self.merges.len() - 1) as Id
+        (self.primitives + self.made - 1) as Id
     }
 
     /// The number of a merge; none if the cluster is a primitive.
@@ -57,14 +60,15 @@ impl Merges {
     }
 }
 
-/// Merges any two clusters that are each other's neighbours. The result keeps the order of the curve, both in the place of the first.
+/// Merges any two clusters that are each other's neighbours. What is left keeps the order of the curve, both in the place of the first; it stands in the first places of
+/// `merged`, which has room for as many as there were. Returns how many they are.
 pub(super) fn merge(
     clusters: &[Cluster],
     neighbours: &[i8],
-    merged: &mut Vec<Cluster>,
+    merged: &mut [Cluster],
     merges: &mut Merges,
     work: Work<'_>,
-) -> Result<(), Cancelled> {
+) -> Result<usize, Cancelled> {
     // Count what becomes of each piece, so that all know where to write.
     let places = |first: usize| first..clusters.len().min(first + PIECE);
     let firsts: Vec<_> = (0..clusters.len()).step_by(PIECE).collect();
@@ -76,11 +80,9 @@ pub(super) fn merge(
     });
 
     let pairs: usize = counts.iter().map(|[pairs, _]| pairs).sum();
-    let made = merges.merges.len();
-    merged.resize(clusters.len() - pairs, Cluster::NONE);
-    merges.merges.resize(made + pairs, Merge(PackedAabb::EMPTY));
-    merges.sizes.resize(made + pairs, 0);
-    let mut rest = (&mut merged[..], &mut merges.merges[made..], &mut merges.sizes[made..]);
+    let made = merges.made;
+    merges.made += pairs;
+    let mut rest = (merged, &mut merges.merges[made..], &mut merges.sizes[made..]);
     let mut first_id = merges.primitives + made;
     let mut tasks = Vec::with_capacity(firsts.len());
     for (first, [pairs, vanishing]) in firsts.into_iter().zip(counts) {
@@ -100,7 +102,8 @@ pub(super) fn merge(
             output.write(clusters, pairs);
         }
     });
-    work.check()
+    work.check()?;
+    Ok(clusters.len() - pairs)
 }
 
 /// What becomes of some clusters.

@@ -48,22 +48,23 @@ fn merge_all(
 ) -> Result<Merges, Cancelled> {
     let level = SimdLevel::active();
     let primitives = clusters.len();
-    let mut merges = Merges::with_capacity(primitives);
-    let mut merged = Vec::new();
+    let mut merges = Merges::with_room(primitives, work.without_progress())?;
+    let mut merged = work.without_progress().copies(Cluster::NONE, primitives)?;
     let mut neighbours = vec![0i8; primitives];
     let mut was_slow = !is_measurable;
-    while clusters.len() > 1 {
-        let count = clusters.len();
-        let neighbours = &mut neighbours[..count];
+    let mut count = primitives;
+    while count > 1 {
+        let (some, neighbours) = (&clusters[..count], &mut neighbours[..count]);
         match was_slow {
             true => pair_up(neighbours),
-            false => find_nearest(&clusters, neighbours, level, work)?,
+            false => find_nearest(some, neighbours, level, work)?,
         }
-        merge(&clusters, neighbours, &mut merged, &mut merges, work)?;
+        let left = merge(some, neighbours, &mut merged, &mut merges, work)?;
         std::mem::swap(&mut clusters, &mut merged);
         // Where ties make a ring, nobody may be the nearest of its nearest.
-        was_slow = !is_measurable || clusters.len() as f64 > SLOW * count as f64;
-        work.part(count - clusters.len(), primitives).done()?;
+        was_slow = !is_measurable || left as f64 > SLOW * count as f64;
+        work.part(count - left, primitives).done()?;
+        count = left;
     }
     Ok(merges)
 }

@@ -24,12 +24,6 @@ const LEAST_OVERLAP: f64 = 1e-3;
 
 /// About how long it takes, in the units of [`Bvh2::cost_for_wide`].
 pub(super) const COST: f64 = 1000.0;
-
-/// Whether the options ask for a wide tree in which triangles are cut.
-pub(super) fn is_asked_for(options: &BuildOptions) -> bool {
-    options.clamped().spatial_splits > 0.0
-}
-
 /// Builds the binary tree, in parallel. A primitive may lie in several leaves, whose boxes are around parts of it. The same for any number of threads.
 ///
 /// # Errors
