@@ -2,6 +2,7 @@
 
 use super::WideBvh;
 use super::collapse::{BLOCK_LINES, NODE_LINES, Plan, primitives};
+use super::linear;
 use super::node::{Reference, WIDTH, WideNode};
 use super::parts::Parts;
 use super::sharing::Place;
@@ -9,7 +10,7 @@ use crate::build::{BuildMemory, Work};
 use crate::geometry::{LANES, TriangleBlock};
 use crate::simd::{Arena, Part};
 use crate::structures::{AccelerationStructure, StructureKind};
-use crate::{BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
+use crate::{Aabb, BuildError, BuildOptions, Bvh2, Geometry, SimdLevel, Vec3, parallel};
 
 /// About how long planning takes, in the units of [`Bvh2::cost`].
 const PLAN_COST: f64 = 20.0;
@@ -36,6 +37,9 @@ pub(super) fn build<G: Geometry>(
     work: Work<'_>,
 ) -> Result<WideBvh, BuildError> {
     BuildMemory::check(StructureKind::BvhWide, geometry.len(), options)?;
+    if linear::is_asked_for(options) {
+        return linear::build(geometry, options, work);
+    }
     let allowed = options;
     let options = binary_options(options);
     let binary = Bvh2::cost_for_wide(&options);
@@ -67,21 +71,29 @@ pub(super) fn build<G: Geometry>(
             (leaf, 0)
         }
     });
-    let (arena, (root, depth)) = filled.ok_or(BuildError::Cancelled)?;
-    let (bounds, primitives) = (tree.bounds(), geometry.len() as u32);
-    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let triangle_test = options.triangle_test;
-    Ok(WideBvh {
+    let filled = filled.ok_or(BuildError::Cancelled)?;
+    Ok(finished(tree.bounds(), geometry.len(), &options, parts, filled))
+}
+
+/// The tree of lines that were filled, with its root and how many nodes lie on the longest way from there.
+pub(super) fn finished(
+    bounds: Aabb,
+    primitives: usize,
+    options: &BuildOptions,
+    parts: Parts,
+    (arena, (root, depth)): (Arena, (Reference, usize)),
+) -> WideBvh {
+    WideBvh {
         bounds,
-        primitives,
-        triangle_test,
-        reach,
+        primitives: primitives as u32,
+        triangle_test: options.triangle_test,
+        reach: bounds.min.abs().max(bounds.max.abs()).max_element(),
         parts,
         depth,
         root,
         arena,
         level: SimdLevel::active(),
-    })
+    }
 }
 
 /// What the leaves of a node are made of, kept so that not every node needs memory of its own.

@@ -1,13 +1,16 @@
 //! From two children a node to sixteen: which nodes of the binary tree are kept, by the surface area heuristic. Ylitie, Karras and Laine,
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.
 
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use super::division::{Division, Trees};
 use super::node::{WIDTH, WideNode};
 use super::parts::Parts;
 use super::sharing::Sharing;
 use crate::Bvh2;
 use crate::build::{Cancelled, Work};
 use crate::geometry::{LANES, TriangleBlock};
-use crate::parallel::join_if;
+use crate::parallel::{self, join_if};
 
 /// How many cache lines a node takes.
 pub(super) const NODE_LINES: usize = size_of::<WideNode>() / 64;
@@ -20,9 +23,6 @@ const LEAF_COST: f32 = 1.0;
 
 /// Subtrees with more nodes below them are looked at in parallel.
 const PARALLEL_NODES: usize = 4096;
-
-/// Below nodes with more cache lines it is asked whether to go on counting them.
-const MANY_LINES: usize = 1 << 16;
 
 /// All references below a node of a binary tree.
 pub(super) fn primitives(tree: &Bvh2, number: usize) -> &[u32] {
@@ -42,38 +42,26 @@ pub(super) fn primitives(tree: &Bvh2, number: usize) -> &[u32] {
 /// What is best for each node of a binary tree.
 pub(super) struct Plan {
     choices: Vec<Choice>,
+    /// How many cache lines everything below the wide node takes that a node becomes, if it becomes one.
+    lines_below: Vec<AtomicU32>,
 }
 
 /// What is best for one node.
 #[derive(Clone, Copy)]
 struct Choice {
-    /// How many trees the left child becomes when the node's subtree becomes at most so many, from two to sixteen, by number less one; 0 where fewer
-    /// trees are better. First stands whether the node becomes a leaf when its subtree is to be one tree.
-    trees: [u8; WIDTH],
-    /// How many cache lines everything below the wide node takes that the node becomes, if it becomes one.
-    lines_below: u32,
+    /// How its trees are divided among its children. First stands whether the node becomes a leaf when its subtree is to be one tree.
+    trees: Division,
 }
 
 impl Choice {
-    const NONE: Self = Self { trees: [0; WIDTH], lines_below: 0 };
+    const NONE: Self = Self { trees: [0; WIDTH] };
 }
 
-/// What a subtree is as at most so many separate trees, from one to sixteen, by number less one.
-struct Trees {
-    costs: [f32; WIDTH],
-    /// Into how many trees it can be divided: as many as it has leaves.
-    most: usize,
+/// What a subtree is as so many separate trees.
+struct Subtree {
+    trees: Trees,
     /// How many primitives it has.
     primitives: u32,
-}
-
-impl Trees {
-    /// Of a subtree that is a leaf, or not looked at.
-    fn one(cost: f32, primitives: u32) -> Self {
-        let mut costs = [f32::INFINITY; WIDTH];
-        costs[0] = cost;
-        Self { costs, most: 1, primitives }
-    }
 }
 
 impl Plan {
@@ -86,34 +74,14 @@ impl Plan {
             Search { tree, root_area, work: searching }.best(0, root, below);
         }
         work.check()?;
-        let mut plan = Self { choices };
+        let lines_below = tree.nodes().iter().map(|_| AtomicU32::new(0)).collect();
+        let plan = Self { choices, lines_below };
         if !tree.nodes().is_empty() && !plan.is_leaf(0) {
-            plan.count_lines(tree, parts, 0, counting.without_progress())?;
+            let counter = LineCounter { plan: &plan, tree, parts, work: counting };
+            counter.count(0, true);
         }
         counting.done()?;
         Ok(plan)
-    }
-
-    /// Counts the cache lines below the wide node that a node becomes.
-    fn count_lines(
-        &mut self,
-        tree: &Bvh2,
-        parts: &Parts,
-        number: usize,
-        work: Work<'_>,
-    ) -> Result<usize, Cancelled> {
-        let children = self.children(tree, number);
-        let mut lines = BLOCK_LINES * self.sharing(tree, parts, &children).blocks;
-        for child in children.numbers() {
-            if !self.is_leaf(child) {
-                lines += NODE_LINES + self.count_lines(tree, parts, child, work)?;
-            }
-        }
-        self.choices[number].lines_below = u32::try_from(lines).unwrap_or(u32::MAX);
-        if lines > MANY_LINES {
-            work.ask()?;
-        }
-        Ok(lines)
     }
 
     /// How those of some children that become leaves share blocks.
@@ -129,7 +97,7 @@ impl Plan {
 
     /// How much memory it takes.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.choices[..])
+        size_of_val(&self.choices[..]) + size_of_val(&self.lines_below[..])
     }
 
     /// Whether the node of the binary tree becomes a leaf, given that it becomes one tree.
@@ -139,7 +107,7 @@ impl Plan {
 
     /// How many cache lines everything below a node takes, given that it becomes one tree and no leaf.
     pub(super) fn lines_below(&self, number: usize) -> usize {
-        self.choices[number].lines_below as usize
+        self.lines_below[number].load(Relaxed) as usize
     }
 
     /// The nodes of the binary tree that become the children of the wide node in the place of one of them, which is no leaf.
@@ -185,6 +153,38 @@ impl Children {
     }
 }
 
+/// Counts cache lines.
+struct LineCounter<'a> {
+    plan: &'a Plan,
+    tree: &'a Bvh2,
+    parts: &'a Parts,
+    work: Work<'a>,
+}
+
+impl LineCounter<'_> {
+    /// Counts those below the wide node that a node becomes; in parallel if it is large.
+    fn count(&self, number: usize, is_large: bool) -> usize {
+        let Self { plan, tree, parts, work } = *self;
+        if is_large && work.without_progress().ask().is_err() {
+            return 0;
+        }
+        let children = plan.children(tree, number);
+        let nodes = children.numbers().filter(|&child| !plan.is_leaf(child));
+        let below: usize = match is_large {
+            true => parallel::map_tasks(nodes.collect(), |child| {
+                let is_large = primitives(tree, child).len() > PARALLEL_NODES;
+                NODE_LINES + self.count(child, is_large)
+            })
+            .into_iter()
+            .sum(),
+            false => nodes.map(|child| NODE_LINES + self.count(child, false)).sum(),
+        };
+        let lines = below + BLOCK_LINES * plan.sharing(tree, parts, &children).blocks;
+        plan.lines_below[number].store(u32::try_from(lines).unwrap_or(u32::MAX), Relaxed);
+        lines
+    }
+}
+
 /// The search for the best plan.
 struct Search<'a> {
     tree: &'a Bvh2,
@@ -194,7 +194,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The same of a child of a large node; if it is not large itself, it is reported.
-    fn best_of_large(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Trees {
+    fn best_of_large(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Subtree {
         let nodes = 1 + below.len();
         let best = self.best(number, choice, below);
         if nodes <= PARALLEL_NODES {
@@ -205,7 +205,7 @@ impl Search<'_> {
     }
 
     /// Finds what is best for a node and all nodes below it, whose choices lie side by side.
-    fn best(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Trees {
+    fn best(&self, number: usize, choice: &mut Choice, below: &mut [Choice]) -> Subtree {
         let node = &self.tree.nodes()[number];
         // Relative to the root's, which neither overflows nor vanishes; of a line every part is met as often as the whole.
         let area = match self.root_area > 0.0 {
@@ -214,7 +214,8 @@ impl Search<'_> {
         };
         if node.is_leaf() {
             choice.trees[0] = 1;
-            return Trees::one(area * LEAF_COST, node.count());
+            let trees = Trees::one(area * LEAF_COST);
+            return Subtree { trees, primitives: node.count() };
         }
 
         // The nodes of a tree lie depth first, pair by pair: below the pair first what is below its left node.
@@ -222,7 +223,7 @@ impl Search<'_> {
         let (pair, below) = below.split_at_mut(2);
         let parallel = below.len() > PARALLEL_NODES;
         if parallel && self.work.check().is_err() {
-            return Trees::one(0.0, 0);
+            return Subtree { trees: Trees::one(0.0), primitives: 0 };
         }
         let right_node = &self.tree.nodes()[first + 1];
         let below_left = match right_node.is_leaf() {
@@ -241,49 +242,19 @@ impl Search<'_> {
         };
         let primitives = left.primitives.saturating_add(right.primitives);
 
-        let mut costs = [f32::INFINITY; WIDTH];
-        // Divide so many trees among both children in the best way. All numbers of trees to the right at once: what a child cannot be divided into costs infinitely
-        // much, and more than sixteen trees are not looked at.
-        let most = (left.most + right.most).min(WIDTH);
-        let mut divided = [f32::INFINITY; 2 * WIDTH];
-        let mut to_left = [0; 2 * WIDTH];
-        for (less_one, left_cost) in left.costs[..left.most.min(WIDTH - 1)].iter().enumerate() {
-            let divided = &mut divided[less_one + 1..][..WIDTH];
-            let to_left = &mut to_left[less_one + 1..][..WIDTH];
-            for ((divided, to_left), right_cost) in
-                divided.iter_mut().zip(to_left).zip(&right.costs)
-            {
-                let cost = left_cost + right_cost;
-                let is_less = cost < *divided;
-                *divided = if is_less { cost } else { *divided };
-                *to_left = if is_less { less_one as u32 + 1 } else { *to_left };
-            }
-        }
-        for trees in 2..=most {
-            costs[trees - 1] = divided[trees - 1];
-            choice.trees[trees - 1] = to_left[trees - 1] as u8;
-        }
-
         // One tree: a leaf, or a node over sixteen.
-        let as_node = area + costs[most - 1];
-        choice.trees[WIDTH - 1] = choice.trees[most - 1];
         let as_leaf = match primitives as usize <= LANES {
             true => area * LEAF_COST,
             false => f32::INFINITY,
         };
-        costs[0] = as_leaf.min(as_node);
-        if as_leaf <= as_node && as_leaf.is_finite() {
-            choice.trees[0] = 1;
-        }
-        for trees in 2..=most {
-            if costs[trees - 2] <= costs[trees - 1] {
-                // Sixteen are asked for only when there must be a node here.
-                if trees < WIDTH {
-                    choice.trees[trees - 1] = 0;
-                }
-                costs[trees - 1] = costs[trees - 2];
-            }
-        }
-        Trees { costs, most, primitives }
+        let mut is_leaf = false;
+        let (trees, division) = Trees::of_node(&left.trees, &right.trees, |below| {
+            let as_node = area + below;
+            is_leaf = as_leaf <= as_node && as_leaf.is_finite();
+            as_leaf.min(as_node)
+        });
+        choice.trees = division;
+        choice.trees[0] = u8::from(is_leaf);
+        Subtree { trees, primitives }
     }
 }

@@ -17,12 +17,17 @@ pub(super) struct Parts {
 }
 
 impl Parts {
+    /// None: every primitive lies in one leaf.
+    pub(super) fn none() -> Self {
+        Self { bits: Vec::new(), center: Vec3::ZERO, half: 0.0 }
+    }
+
     /// Those that the leaves of a binary tree name more than once.
     pub(super) fn of(tree: &Bvh2, primitives: usize) -> Self {
         let bounds = tree.bounds();
         let references = tree.primitive_indices();
         if references.len() == primitives {
-            return Self { bits: Vec::new(), center: Vec3::ZERO, half: 0.0 };
+            return Self::none();
         }
         let words = primitives.div_ceil(64);
         let (mut once, mut several) = (vec![0u64; words], vec![0u64; words]);

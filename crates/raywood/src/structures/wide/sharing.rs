@@ -44,6 +44,21 @@ impl Sharing {
         Self { places, blocks }
     }
 
+    /// How many blocks leaves take of which so many have 0, 1, ... primitives.
+    pub(super) fn blocks(mut leaves: [u32; LANES + 1]) -> usize {
+        let mut blocks = 0;
+        for count in (1..=LANES).rev() {
+            while leaves[count] > 0 {
+                leaves[count] -= 1;
+                if let Some(other) = (1..=LANES - count).rev().find(|&other| leaves[other] > 0) {
+                    leaves[other] -= 1;
+                }
+                blocks += 1;
+            }
+        }
+        blocks
+    }
+
     /// Where the leaf lies that is the child in a lane.
     pub(super) fn place(&self, lane: usize) -> Place {
         self.places[lane]
@@ -81,6 +96,10 @@ mod tests {
             assert!(lanes[..sharing.blocks].iter().all(|&lanes| lanes & 1 == 1), "{counts:?}");
             assert!(lanes[sharing.blocks..].iter().all(|&lanes| lanes == 0), "{counts:?}");
             assert_eq!(sharing.blocks, fewest_blocks(&counts), "{counts:?}");
+
+            let mut leaves = [0; LANES + 1];
+            counts.iter().for_each(|&count| leaves[count] += 1);
+            assert_eq!(sharing.blocks, Sharing::blocks(leaves), "{counts:?}");
         }
     }
 
