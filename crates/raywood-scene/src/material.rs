@@ -2,7 +2,7 @@
 
 use raywood::Vec3;
 
-use crate::{Pattern, Rgb};
+use crate::{MetallicRoughness, Pattern, Rgb, SurfaceTextures};
 
 /// The number of a material in its scene.
 pub type MaterialId = u32;
@@ -36,6 +36,11 @@ pub struct Material {
     pub absorption: Vec3,
     /// Light that the surface sends out by itself, towards the eye only: it does not light other surfaces.
     pub emission: Rgb,
+    /// What it is made of, where a file says so in these terms: diffuse light, highlight, mirror and transmission follow from it, point by point
+    /// where textures modulate it.
+    pub metallic_roughness: Option<MetallicRoughness>,
+    /// What varies over the surface, if anything does.
+    pub textures: Option<Box<SurfaceTextures>>,
 }
 
 impl Default for Material {
@@ -52,6 +57,8 @@ impl Default for Material {
             ior: 1.0,
             absorption: Vec3::ZERO,
             emission: Rgb::ZERO,
+            metallic_roughness: None,
+            textures: None,
         }
     }
 }

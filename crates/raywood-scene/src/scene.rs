@@ -2,7 +2,7 @@
 
 use raywood::{Aabb, Spheres, Vec3};
 
-use crate::{Camera, Light, Material, MaterialId, Mesh, Rgb};
+use crate::{Camera, Light, Material, MaterialId, Mesh, Rgb, TextureImage};
 
 /// Surfaces, materials, lights and cameras.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +17,8 @@ pub struct Scene {
     pub sphere_materials: Vec<MaterialId>,
     /// The materials that triangles and spheres name.
     pub materials: Vec<Material>,
+    /// The images that the materials' textures name.
+    pub images: Vec<TextureImage>,
     /// The lights that the file or the code gave; may be empty.
     pub lights: Vec<Light>,
     /// The cameras that the file or the code gave; may be empty. The first is the one to use.

@@ -16,6 +16,10 @@ pub(crate) struct RawMesh {
     pub(crate) normals: Vec<Vec3>,
     /// A linear colour per vertex; or empty.
     pub(crate) colors: Vec<Rgb>,
+    /// Two sets of texture coordinates per vertex, each empty if no texture reads it.
+    pub(crate) texture_coordinates: [Vec<[f32; 2]>; 2],
+    /// A tangent per vertex of any length with the sign of the bitangent, zero for none; or empty.
+    pub(crate) tangents: Vec<[f32; 4]>,
     /// Three vertices per triangle.
     pub(crate) triangles: Vec<[u32; 3]>,
     /// A material per triangle; may be shorter where all the last ones have material 0.
@@ -59,6 +63,14 @@ impl RawMesh {
         for normal in &mut self.normals {
             *normal = normal.normalize_or_zero();
         }
+        for tangent in &mut self.tangents {
+            let [x, y, z, sign] = *tangent;
+            let Vec3 { x, y, z } = Vec3::new(x, y, z).normalize_or_zero();
+            *tangent = [x, y, z, if sign < 0.0 { -1.0 } else { 1.0 }];
+        }
+        for uv in self.texture_coordinates.iter_mut().flatten() {
+            *uv = uv.map(|x| if x.is_finite() { x } else { 0.0 });
+        }
         for color in &mut self.colors {
             let channel = |c: f32| if c.is_finite() { c.max(0.0) } else { 1.0 };
             *color = Rgb::new(channel(color.x), channel(color.y), channel(color.z));
@@ -66,8 +78,8 @@ impl RawMesh {
 
         let triangles = TriangleMesh::new(self.positions, self.triangles)
             .map_err(|error| LoadError::new(input.path, Place::File, error.to_string()))?;
-        let (normals, colors) = (self.normals, self.colors);
-        Ok(Mesh { triangles, normals, colors, materials: self.materials })
+        let Self { normals, colors, texture_coordinates, tangents, materials, .. } = self;
+        Ok(Mesh { triangles, normals, colors, texture_coordinates, tangents, materials })
     }
 
     /// Drops the triangles with a vertex that is nowhere, and moves those vertices to the origin, where none uses them.

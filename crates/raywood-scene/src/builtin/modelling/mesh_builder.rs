@@ -36,6 +36,7 @@ impl MeshBuilder {
     pub fn finish(self) -> Mesh {
         let triangles = TriangleMesh::new(self.all.positions, self.all.triangles)
             .expect("parts have finite positions and indices in range");
-        Mesh { triangles, normals: self.all.normals, colors: Vec::new(), materials: self.materials }
+        let (normals, materials) = (self.all.normals, self.materials);
+        Mesh { triangles, normals, materials, ..Mesh::default() }
     }
 }

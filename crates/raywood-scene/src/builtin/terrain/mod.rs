@@ -128,7 +128,7 @@ fn island(n: usize, heights: &Heights, eye: Vec3) -> Mesh {
 
     let triangles =
         TriangleMesh::new(positions, triangles).expect("heights are finite, indices in range");
-    Mesh { triangles, normals, colors, materials }
+    Mesh { triangles, normals, colors, materials, ..Mesh::default() }
 }
 
 fn lights() -> Vec<Light> {

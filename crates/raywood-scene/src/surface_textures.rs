@@ -1,0 +1,56 @@
+//! What varies over a surface by textures.
+
+use crate::Texture;
+
+/// The textures of a material. Each modulates something that the material says for the whole surface; without it nothing varies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceTextures {
+    /// Multiplies the colour: the base colour of what is [metallic and rough](crate::MetallicRoughness), else diffuse light. Its alpha is the
+    /// share of the surface that is there, if `opacity` says so.
+    pub color: Option<Texture>,
+    /// How much of the surface is there, for alpha to multiply. `None` means all of it, whatever alpha says. What is not there
+    /// lets rays straight on.
+    pub opacity: Option<f32>,
+    /// A further factor of opacity: red, green and blue, averaged.
+    pub opacity_map: Option<Texture>,
+    /// Normals in tangent space: red along u, green against v, blue along the normal, each from -1 to 1. The number scales the first two.
+    pub normal: Option<(Texture, f32)>,
+    /// Blue multiplies how metallic, green how rough it is.
+    pub metallic_roughness: Option<Texture>,
+    /// Red, green and blue multiply what is mirrored by what is not metal, alpha multiplies `1 - roughness`
+    /// (`KHR_materials_pbrSpecularGlossiness`).
+    pub glossiness: Option<Texture>,
+    /// Multiplies what is mirrored by what is not metal, or the highlight and mirror of a material that is not [metallic and
+    /// rough](crate::MetallicRoughness).
+    pub specular_color: Option<Texture>,
+    /// Its alpha does so too.
+    pub specular: Option<Texture>,
+    /// Red multiplies the share let through.
+    pub transmission: Option<Texture>,
+    /// Red tells how much of the ambient light arrives, weighted by the number: at 0 all does.
+    pub occlusion: Option<(Texture, f32)>,
+    /// Multiplies the light sent out.
+    pub emission: Option<Texture>,
+}
+
+impl SurfaceTextures {
+    /// All that there are.
+    pub fn all(&self) -> impl Iterator<Item = &Texture> {
+        let Self { color, opacity: _, opacity_map, normal, metallic_roughness, .. } = self;
+        let Self {
+            glossiness, specular_color, specular, transmission, occlusion, emission, ..
+        } = self;
+        let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
+        let others = [
+            color,
+            opacity_map,
+            metallic_roughness,
+            glossiness,
+            specular_color,
+            specular,
+            transmission,
+            emission,
+        ];
+        others.into_iter().flatten().chain(numbered)
+    }
+}
