@@ -15,8 +15,8 @@ use crate::{Material, Scene};
 #[non_exhaustive]
 pub struct LoadOptions {
     /// Refuse what would otherwise be mended and said in [`Scene::warnings`]: vertices that are NaN or infinite, faces with
-    /// fewer than three vertices, materials that no file defines, and the like. What is merely not supported (textures,
-    /// lines, points) is left out with a warning all the same.
+    /// fewer than three vertices, materials that no file defines, and the like. What is merely not supported (lines,
+    /// points, images in other formats) is left out with a warning all the same.
     pub strict: bool,
 }
 

@@ -5,7 +5,9 @@ use std::path::Path;
 use crate::error::LoadError;
 use crate::{LoadOptions, Scene};
 
+mod file_name;
 mod gltf;
+mod images;
 mod mtl;
 mod notes;
 mod obj;

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: polygons in text, with materials in MTL files beside it.
 //!
-//! Read: `v` (with weight or colour), `vn`, `f` in every form of indices, `usemtl`, `mtllib`, `\` at line ends. Passed over:
-//! `vt` (textures are not shown yet), `g`, `o`, `s` (a corner without `vn` is shaded flat). Left out with a warning: lines,
+//! Read: `v` (with weight or colour), `vn`, `vt` where materials have textures, `f` in every form of indices, `usemtl`, `mtllib`, `\` at
+//! line ends. Passed over: `g`, `o`, `s` (a corner without `vn` is shaded flat). Left out with a warning: lines,
 //! points, curves and surfaces.
 
 use std::collections::HashMap;
@@ -41,8 +41,22 @@ static BYTE_COLORS: Fault = Fault {
     remedy: "taken as out of 255",
 };
 
-/// A corner's normal where it has none.
-const NO_NORMAL: u32 = u32::MAX;
+static NO_SUCH_COORDINATES: Fault = Fault {
+    one: "face corner names a texture coordinate that does not precede it",
+    many: "face corners name texture coordinates that do not precede them",
+    remedy: "taken as 0",
+};
+
+/// A corner's normal or texture coordinates where it has none.
+const NONE: u32 = u32::MAX;
+
+/// A corner of a face: its vertex, and its normal and texture coordinates or [`NONE`].
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: u32,
+    normal: u32,
+    coordinates: u32,
+}
 
 /// Whether one of the first lines is a vertex or names a material file.
 fn recognises(bytes: &[u8]) -> bool {
@@ -57,6 +71,9 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
         mesh: RawMesh::default(),
         normals: Vec::new(),
         corner_normals: Vec::new(),
+        may_be_textured: memchr::memmem::find(input.bytes, b"mtllib").is_some(),
+        coordinates: Vec::new(),
+        corner_coordinates: Vec::new(),
         polygon: Vec::new(),
         libraries: Vec::new(),
         material: None,
@@ -77,8 +94,14 @@ struct Parser<'a> {
     normals: Vec<Vec3>,
     /// Per triangle, its corners' normals; shorter where the last ones have none.
     corner_normals: Vec<[u32; 3]>,
-    /// The corners of the face being read: vertex and normal.
-    polygon: Vec<(u32, u32)>,
+    /// Whether any material may have textures; else texture coordinates are passed over.
+    may_be_textured: bool,
+    /// The `vt` of the file, v turned to run down.
+    coordinates: Vec<[f32; 2]>,
+    /// Per triangle, its corners' texture coordinates; shorter where the last ones have none.
+    corner_coordinates: Vec<[u32; 3]>,
+    /// The corners of the face being read.
+    polygon: Vec<Corner>,
     /// The operands of `mtllib`.
     libraries: Vec<(&'a [u8], usize)>,
     /// The name that the triangles being read are of, if any.
@@ -99,6 +122,7 @@ impl<'a> Parser<'a> {
                 b"v" => self.vertex()?,
                 b"f" => self.face()?,
                 b"vn" => self.normal()?,
+                b"vt" if self.may_be_textured => self.texture_coordinates()?,
                 b"vt" | b"g" | b"o" | b"s" | b"" => {}
                 b"usemtl" => {
                     self.end_material();
@@ -193,32 +217,52 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
+    /// `vt u`, and possibly `v` and `w`.
+    fn texture_coordinates(&mut self) -> Result<(), LoadError> {
+        self.cursor.skip_blanks_and_continuations();
+        let Some(u) = self.cursor.number() else {
+            return Err(self.cursor.unexpected("a number (a texture coordinate)"));
+        };
+        self.cursor.skip_blanks_and_continuations();
+        let v = self.cursor.number().unwrap_or(0.0);
+        // In OBJ v runs up, in images down.
+        self.coordinates.push([u, 1.0 - v]);
+        Ok(())
+    }
+
     /// `f` and three or more corners.
     fn face(&mut self) -> Result<(), LoadError> {
         let start = self.cursor.offset();
         self.polygon.clear();
-        let mut has_normals = false;
+        let (mut has_normals, mut has_coordinates) = (false, false);
         while !self.at_statement_end() {
             let corner = self.corner()?;
-            has_normals |= corner.1 != NO_NORMAL;
+            has_normals |= corner.normal != NONE;
+            has_coordinates |= corner.coordinates != NONE;
             self.polygon.push(corner);
         }
         if self.polygon.len() < 3 {
             return self.notes.mend(&TOO_FEW_CORNERS, || self.cursor.place_of(start));
         }
 
-        let Self { polygon, mesh, corner_normals, .. } = self;
+        let Self { polygon, mesh, corner_normals, corner_coordinates, .. } = self;
         let RawMesh { positions, triangles, .. } = mesh;
         if has_normals {
-            corner_normals.resize(triangles.len(), [NO_NORMAL; 3]);
+            corner_normals.resize(triangles.len(), [NONE; 3]);
+        }
+        if has_coordinates {
+            corner_coordinates.resize(triangles.len(), [NONE; 3]);
         }
         let careful = polygon::triangulate(
             polygon.len(),
-            |i| positions[polygon[i].0 as usize],
+            |i| positions[polygon[i].vertex as usize],
             |triangle| {
-                triangles.push(triangle.map(|i| polygon[i].0));
+                triangles.push(triangle.map(|i| polygon[i].vertex));
                 if has_normals {
-                    corner_normals.push(triangle.map(|i| polygon[i].1));
+                    corner_normals.push(triangle.map(|i| polygon[i].normal));
+                }
+                if has_coordinates {
+                    corner_coordinates.push(triangle.map(|i| polygon[i].coordinates));
                 }
             },
         );
@@ -229,9 +273,9 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// `7`, `7/3`, `7//5` or `7/3/5`: the vertex and the normal, counted from 0.
+    /// `7`, `7/3`, `7//5` or `7/3/5`: vertex, texture coordinates and normal, here counted from 0.
     #[inline]
-    fn corner(&mut self) -> Result<(u32, u32), LoadError> {
+    fn corner(&mut self) -> Result<Corner, LoadError> {
         let start = self.cursor.offset();
         let Some(index) = self.cursor.integer() else {
             return Err(self.cursor.unexpected("a vertex index"));
@@ -240,10 +284,19 @@ impl<'a> Parser<'a> {
             return Err(self.no_such_vertex(index));
         };
 
-        let mut normal = NO_NORMAL;
+        let (mut normal, mut coordinates) = (NONE, NONE);
         if self.cursor.take(b'/') {
-            // The texture coordinate between the strokes may be missing, and is not used yet.
-            self.cursor.integer();
+            // What is between the strokes may be missing.
+            if let Some(index) = self.cursor.integer()
+                && self.may_be_textured
+            {
+                match resolve(index, self.coordinates.len()) {
+                    Some(found) => coordinates = found,
+                    None => {
+                        self.notes.mend(&NO_SUCH_COORDINATES, || self.cursor.place_of(start))?;
+                    }
+                }
+            }
             if self.cursor.take(b'/')
                 && let Some(index) = self.cursor.integer()
             {
@@ -260,7 +313,7 @@ impl<'a> Parser<'a> {
             let forms = "a corner like 7, 7/3, 7//5 or 7/3/5";
             return Err(self.cursor.unexpected(forms));
         }
-        Ok((vertex, normal))
+        Ok(Corner { vertex, normal, coordinates })
     }
 
     /// A face corner names a vertex that is not there.
@@ -306,11 +359,6 @@ impl<'a> Parser<'a> {
     /// Puts normals to vertices and materials to names.
     fn finish(mut self, input: &Input<'_>) -> Result<Scene, LoadError> {
         self.say_what_is_left_out()?;
-        if !self.corner_normals.is_empty() {
-            self.corner_normals.resize(self.mesh.triangles.len(), [NO_NORMAL; 3]);
-            split_by_normal(&mut self.mesh, &self.corner_normals, &self.normals);
-        }
-
         let mut known = HashMap::new();
         for (operand, start) in &self.libraries {
             let place = || self.cursor.place_of(*start);
@@ -320,10 +368,14 @@ impl<'a> Parser<'a> {
         let mut used: Vec<_> = self.materials.iter().map(|(name, id)| (*id, *name)).collect();
         used.sort_unstable();
         let mut unknown = Vec::new();
+        let mut images = mtl::Images::default();
         for (id, name) in used {
             let material = &mut materials[id as usize];
             match name.map(|name| (name, known.get(name))) {
-                Some((_, Some(found))) => material.clone_from(found),
+                Some((name, Some(found))) => {
+                    let name = String::from_utf8_lossy(name).into_owned();
+                    *material = found.material(name, &mut images);
+                }
                 Some((name, None)) => {
                     material.name = String::from_utf8_lossy(name).into_owned();
                     unknown.push(quoted(name));
@@ -344,9 +396,42 @@ impl<'a> Parser<'a> {
             self.notes.mend_line(Place::File, &problem, "shown in grey")?;
         }
 
+        // Vertices by what their corners have; texture coordinates only where a texture reads them.
+        if materials.iter().all(|material| material.textures.is_none()) {
+            self.corner_coordinates.clear();
+        }
+        self.split_vertices();
+        let error = |place, message| LoadError::new(input.path, place, message);
+        let images = images.load(|file| file.read(), |_| Place::File, error, &mut self.notes)?;
+
         let mesh = self.mesh.finish(input)?;
         let warnings = self.notes.into_warnings();
-        Ok(Scene { mesh, materials, warnings, ..Scene::default() })
+        Ok(Scene { mesh, materials, images, warnings, ..Scene::default() })
+    }
+
+    /// Gives every vertex its normal and texture coordinates.
+    fn split_vertices(&mut self) {
+        let Self { mesh, normals, coordinates, corner_normals, corner_coordinates, .. } = self;
+        let (has_normals, has_coordinates) =
+            (!corner_normals.is_empty(), !corner_coordinates.is_empty());
+        if !has_normals && !has_coordinates {
+            return;
+        }
+        corner_normals.resize(mesh.triangles.len(), [NONE; 3]);
+        corner_coordinates.resize(mesh.triangles.len(), [NONE; 3]);
+        let corners = corner_normals.iter().zip(&*corner_coordinates);
+        let corners: Vec<_> =
+            corners.map(|(n, c)| [[n[0], c[0]], [n[1], c[1]], [n[2], c[2]]]).collect();
+        let found = split(mesh, &corners);
+        if has_normals {
+            let normal = |[index, _]: &Attributes| normals.get(*index as usize).copied();
+            mesh.normals = found.iter().map(|f| normal(f).unwrap_or(Vec3::ZERO)).collect();
+        }
+        if has_coordinates {
+            let place = |[_, index]: &Attributes| coordinates.get(*index as usize).copied();
+            mesh.texture_coordinates[0] =
+                found.iter().map(|f| place(f).unwrap_or([0.0, 1.0])).collect();
+        }
     }
 
     /// Says what was passed over: one line for lines and points, one for all else.
@@ -389,38 +474,40 @@ fn resolve(index: i64, count: usize) -> Option<u32> {
     if in_range { u32::try_from(from_zero).ok() } else { None }
 }
 
-/// Gives every vertex its normal. A vertex that faces use with several normals becomes several vertices: its first normal stays
-/// with it, the others go to copies at the end, linked in a chain from the vertex.
-fn split_by_normal(mesh: &mut RawMesh, corner_normals: &[[u32; 3]], normals: &[Vec3]) {
-    /// No vertex yet, or the end of a chain.
-    const NONE: u32 = u32::MAX;
+/// The numbers of a corner's normal and texture coordinates, or [`NONE`].
+type Attributes = [u32; 2];
+
+/// Tells every vertex its normal and texture coordinates. A vertex that faces use with several becomes several vertices: the first stay with it, the others
+/// go to copies at the end, linked in a chain from the vertex.
+fn split(mesh: &mut RawMesh, corners: &[[Attributes; 3]]) -> Vec<Attributes> {
     /// Chains stop growing here, so that no file makes searching them slow; one copy too many does no harm.
     const LONGEST: usize = 32;
 
-    let mut normal_of = vec![NONE; mesh.positions.len()];
+    // No vertex yet, or the end of a chain, is `NONE` as well.
+    let mut attributes_of = vec![[NONE; 2]; mesh.positions.len()];
     let mut is_used = vec![false; mesh.positions.len()];
     let mut next = vec![NONE; mesh.positions.len()];
-    for (triangle, wanted) in mesh.triangles.iter_mut().zip(corner_normals) {
+    for (triangle, wanted) in mesh.triangles.iter_mut().zip(corners) {
         for (vertex, &wanted) in triangle.iter_mut().zip(wanted) {
             let original = *vertex as usize;
             if !is_used[original] {
                 is_used[original] = true;
-                normal_of[original] = wanted;
+                attributes_of[original] = wanted;
                 continue;
             }
             let mut found = original;
             let mut length = 0;
-            while normal_of[found] != wanted && next[found] != NONE && length < LONGEST {
+            while attributes_of[found] != wanted && next[found] != NONE && length < LONGEST {
                 found = next[found] as usize;
                 length += 1;
             }
-            if normal_of[found] != wanted {
+            if attributes_of[found] != wanted {
                 let Ok(copy) = u32::try_from(mesh.positions.len()) else { continue };
                 mesh.positions.push(mesh.positions[original]);
                 if let Some(&color) = mesh.colors.get(original) {
                     mesh.colors.push(color);
                 }
-                normal_of.push(wanted);
+                attributes_of.push(wanted);
                 next.push(next[original]);
                 next[original] = copy;
                 found = copy as usize;
@@ -428,6 +515,5 @@ fn split_by_normal(mesh: &mut RawMesh, corner_normals: &[[u32; 3]], normals: &[V
             *vertex = found as u32;
         }
     }
-    let normal = |&index: &u32| normals.get(index as usize).copied().unwrap_or(Vec3::ZERO);
-    mesh.normals = normal_of.iter().map(normal).collect();
+    attributes_of
 }

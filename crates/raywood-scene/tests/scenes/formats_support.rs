@@ -81,6 +81,15 @@ pub fn check_scene(scene: &Scene) {
     assert!(mesh.materials.iter().all(|&m| (m as usize) < scene.materials.len()));
     assert!(mesh.normals.is_empty() || mesh.normals.len() == positions.len());
     assert!(mesh.colors.is_empty() || mesh.colors.len() == positions.len());
+    for coordinates in &mesh.texture_coordinates {
+        assert!(coordinates.is_empty() || coordinates.len() == positions.len());
+        assert!(coordinates.iter().flatten().all(|x| x.is_finite()));
+    }
+    assert!(mesh.tangents.is_empty() || mesh.tangents.len() == positions.len());
+    for material in &scene.materials {
+        let images = material.textures.iter().flat_map(|textures| textures.all());
+        assert!(images.into_iter().all(|texture| (texture.image as usize) < scene.images.len()));
+    }
     for normal in &mesh.normals {
         let length = normal.length();
         assert!(length == 0.0 || (length - 1.0).abs() < 1e-5, "{normal:?}");

@@ -157,7 +157,7 @@ fn mtl_materials() {
     let said = scene.warnings.join("\n");
     for expected in [
         "line 9: material file `no such.mtl` is not there",
-        "my materials.mtl: 1 texture is not shown yet: diffuse",
+        "the image `paint.png` is not there: colours are shown as a magenta checker",
         "my materials.mtl: line 22: found `wrong`, expected a number: left at its default",
         "1 material is not defined by any file (`chalk`): shown in grey",
     ] {

@@ -6,3 +6,4 @@ mod formats_hostile;
 mod formats_real;
 mod formats_support;
 mod formats_text;
+mod texture_files;

@@ -9,8 +9,8 @@ use crate::error::{LoadError, Place, quoted};
 use crate::formats::Input;
 use crate::formats::notes::Notes;
 
-/// Extensions that a file may require: those that change what is seen and are understood, and those of textures, which are
-/// left out in any case.
+/// Extensions that a file may require: those that change what is seen and are understood, and those of images in formats that are not, without
+/// which the shapes are still right.
 const KNOWN: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",

@@ -1,13 +1,14 @@
-//! The outside of a glTF file: the chunks of a `.glb`, and the buffers that the JSON names.
+//! The outside of a glTF file: the chunks of a `.glb`, and the buffers and images that the JSON names.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf_json::Root;
 
+use super::document::Document;
 use crate::error::{LoadError, Place, quoted};
 use crate::formats::Input;
 use crate::formats::notes::Notes;
@@ -98,7 +99,7 @@ pub(super) fn buffers<'a>(
         let bytes = match (&buffer.uri, binary) {
             (Some(uri), _) => match uri.strip_prefix("data:") {
                 Some(data) => Cow::Owned(decode(data).map_err(error)?),
-                None => Cow::Owned(read_beside(input.path, uri, error)?),
+                None => Cow::Owned(read_file(&file_beside(input.path, uri).map_err(error)?)?),
             },
             (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
             (None, _) => {
@@ -114,28 +115,49 @@ pub(super) fn buffers<'a>(
     root.buffers.iter().enumerate().map(buffer).collect()
 }
 
+impl Document<'_> {
+    /// The bytes of an image, or what is wrong with it.
+    pub(super) fn image(&self, index: usize) -> Result<Cow<'_, [u8]>, String> {
+        let image = self.root.images.get(index).ok_or("is not there")?;
+        if let Some(uri) = &image.uri {
+            return match uri.strip_prefix("data:") {
+                Some(data) => decode(data).map(Cow::Owned),
+                None => {
+                    let bytes = read_file(&file_beside(self.path, uri)?);
+                    let name = quoted(uri.as_bytes());
+                    bytes.map(Cow::Owned).map_err(|e| format!("the file {name} {}", e.message()))
+                }
+            };
+        }
+        let view = image.buffer_view.ok_or("has neither uri nor bufferView")?;
+        let view = self.root.buffer_views.get(view.value()).ok_or("has no bufferView")?;
+        let buffer = self.buffers.get(view.buffer.value()).ok_or("has no buffer")?;
+        let start = view.byte_offset.unwrap_or_default().0;
+        let end = start.checked_add(view.byte_length.0);
+        let range = end
+            .and_then(|end| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
+        range.map(Cow::Borrowed).ok_or_else(|| "reaches past the end of its buffer".to_owned())
+    }
+}
+
 /// The file that a URI names, relative to the folder of the glTF file.
-fn read_beside(
-    path: &Path,
-    uri: &str,
-    error: impl Fn(String) -> LoadError,
-) -> Result<Vec<u8>, LoadError> {
+fn file_beside(path: &Path, uri: &str) -> Result<PathBuf, String> {
     let shown = quoted(uri.as_bytes());
     let scheme = uri.split_once(':').map(|(scheme, _)| scheme);
     if scheme.is_some_and(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric())) {
-        return Err(error(format!("found uri {shown}, expected a file's name or data:")));
+        return Err(format!("found uri {shown}, expected a file's name or data:"));
     }
     let Ok(name) = String::from_utf8(percent_decode(uri.as_bytes())) else {
-        return Err(error(format!("found uri {shown}, which is not UTF-8")));
+        return Err(format!("found uri {shown}, which is not UTF-8"));
     };
     let folder = path.parent().unwrap_or(Path::new(""));
     // A name that holds a percent sign of its own may not have been encoded.
     let decoded = folder.join(&name);
     let file = if decoded.exists() { decoded } else { folder.join(uri) };
     if !file.exists() {
-        return Err(error(format!("names the file {shown}, which is not there")));
+        return Err(format!("names the file {shown}, which is not there"));
     }
-    read_file(&file)
+    Ok(file)
 }
 
 /// The bytes of a data URI, after `data:`.

@@ -12,7 +12,7 @@ use crate::formats::notes::Notes;
 
 /// The JSON and the buffers. Indices in the JSON are in range.
 pub(super) struct Document<'a> {
-    path: &'a Path,
+    pub(super) path: &'a Path,
     /// The JSON.
     pub(super) root: Root,
     /// The contents of its buffers.
@@ -32,7 +32,13 @@ impl<'a> Document<'a> {
     /// An error at a value of the JSON.
     #[cold]
     pub(super) fn error(&self, json: impl Into<String>, message: impl Into<String>) -> LoadError {
-        LoadError::new(self.path, Place::Json(json.into()), message)
+        self.error_at(Place::Json(json.into()), message)
+    }
+
+    /// An error at a place.
+    #[cold]
+    pub(super) fn error_at(&self, place: Place, message: impl Into<String>) -> LoadError {
+        LoadError::new(self.path, place, message)
     }
 }
 

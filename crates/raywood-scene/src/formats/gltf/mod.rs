@@ -1,9 +1,10 @@
 //! glTF 2.0 (Khronos 2017), as JSON with buffers beside it (`.gltf`) or all in one (`.glb`).
 //!
 //! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it. Read:
-//! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `COLOR_0`; sparse and normalised accessors; metallic
-//! and rough materials as far as Whitted's method can show them; perspective cameras; punctual lights. Left out with a
-//! warning: textures, points and lines, skins (shown as stored), morph targets and animations.
+//! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `TANGENT`, `TEXCOORD_0`, `TEXCOORD_1`, `COLOR_0`; sparse and normalised
+//! accessors; metallic and rough materials as far as Whitted's method can show them, with all their textures (PNG and JPEG); perspective
+//! cameras; punctual lights. Left out with a warning: images in other formats, points and lines, skins (shown as stored), morph targets
+//! and animations.
 //!
 //! The crate `gltf-json` reads the JSON and checks what it can. What it does not check (that buffers are as long as promised, that
 //! views and accessors lie within them, that nodes form trees) is checked here, before anything is read or allocated.
@@ -11,6 +12,7 @@
 use raywood::{TriangleMesh, Vec3};
 
 use self::document::Document;
+use self::primitive::Reads;
 use super::notes::Notes;
 use super::raw_mesh::RawMesh;
 use super::{Format, Input};
@@ -26,6 +28,7 @@ mod light;
 mod material;
 mod node;
 mod primitive;
+mod texture;
 mod transform;
 
 pub(super) const FORMAT: Format = Format {
@@ -50,15 +53,15 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     let instances = node::instances(&document)?;
 
     // Materials, and a last one for what has none.
-    let mut textures = material::Textures::default();
+    let mut textures = texture::Textures::new(root);
     let mut materials: Vec<Material> =
         root.materials.iter().map(|m| material::convert(m, &mut textures)).collect();
-    textures.say(&mut notes);
     materials.push(Material::default());
+    let reads: Vec<Reads> = materials.iter().map(Reads::of).collect();
 
     // Triangles in world space. All sizes are known beforehand.
     let mut mesh = RawMesh::default();
-    let size = primitive::total_size(&document, &instances)?;
+    let size = primitive::total_size(&document, &instances, &reads)?;
     if size.vertices.max(size.triangles) > MOST {
         let (triangles, vertices) = (size.triangles, size.vertices);
         let message = format!(
@@ -70,12 +73,13 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     mesh.triangles.reserve_exact(size.triangles as usize);
     mesh.materials.reserve_exact(size.triangles as usize);
     for instance in &instances {
-        primitive::add(&document, instance, &mut mesh, &mut notes)?;
+        primitive::add(&document, instance, &reads, &mut mesh, &mut notes)?;
     }
     if !mesh.materials.contains(&(materials.len() as MaterialId - 1)) {
         materials.pop();
     }
     let mesh = mesh.finish(input)?;
+    let images = textures.load(&document, &mut notes)?;
 
     let cameras = camera::cameras(&document, &instances, &mesh.triangles, &mut notes)?;
     let lights = light::lights(&document, &instances, &mesh.triangles, &mut notes);
@@ -84,7 +88,7 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     }
     let warnings = notes.into_warnings();
     let up = Some(Vec3::Y);
-    Ok(Scene { mesh, materials, lights, cameras, up, warnings, ..Scene::default() })
+    Ok(Scene { mesh, materials, images, lights, cameras, up, warnings, ..Scene::default() })
 }
 
 /// The middle and half the diagonal of all triangles, from which cameras and lights take their measure; some place and size

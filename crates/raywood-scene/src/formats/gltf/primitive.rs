@@ -13,7 +13,7 @@ use super::node::Instance;
 use crate::error::{LoadError, Place};
 use crate::formats::notes::{Fault, NOT_FINITE, Notes};
 use crate::formats::raw_mesh::RawMesh;
-use crate::{MaterialId, Rgb};
+use crate::{Material, MaterialId, Rgb};
 
 static NOT_TRIANGLES: Fault = Fault {
     one: "primitive has points or lines",
@@ -50,20 +50,61 @@ fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<usize> {
     primitive.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value())
 }
 
-/// The accessors of a primitive's vertices: positions, and possibly normals and colours.
-type VertexArrays = (usize, Option<usize>, Option<usize>);
+/// What a material's textures read of a mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reads {
+    /// The sets of texture coordinates.
+    sets: [bool; 2],
+    tangents: bool,
+}
 
-/// The vertex arrays of a primitive, if it has positions.
-fn vertex_arrays(primitive: &Primitive) -> Option<VertexArrays> {
-    let positions = attribute(primitive, Semantic::Positions)?;
-    let normals = attribute(primitive, Semantic::Normals);
-    Some((positions, normals, attribute(primitive, Semantic::Colors(0))))
+impl Reads {
+    /// What the textures of a material read.
+    pub(super) fn of(material: &Material) -> Self {
+        let Some(textures) = &material.textures else { return Self::default() };
+        let mut reads = Self { sets: [false; 2], tangents: textures.normal.is_some() };
+        for texture in textures.all() {
+            if let Some(set) = reads.sets.get_mut(usize::from(texture.set)) {
+                *set = true;
+            }
+        }
+        reads
+    }
+}
+
+/// The accessors of a primitive's vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct VertexArrays {
+    positions: usize,
+    normals: Option<usize>,
+    colors: Option<usize>,
+    texture_coordinates: [Option<usize>; 2],
+    tangents: Option<usize>,
+}
+
+/// The vertex arrays of a primitive, if it has positions. Those that only textures read are left out where none does.
+fn vertex_arrays(primitive: &Primitive, reads: &[Reads]) -> Option<VertexArrays> {
+    let Reads { sets, tangents } = reads.get(material_of(primitive, reads)).copied()?;
+    let wanted = |wanted: bool, semantic| wanted.then(|| attribute(primitive, semantic)).flatten();
+    Some(VertexArrays {
+        positions: attribute(primitive, Semantic::Positions)?,
+        normals: attribute(primitive, Semantic::Normals),
+        colors: attribute(primitive, Semantic::Colors(0)),
+        texture_coordinates: [0, 1].map(|set| wanted(sets[set], Semantic::TexCoords(set as u32))),
+        tangents: wanted(tangents, Semantic::Tangents),
+    })
+}
+
+/// The number of a primitive's material: the last is for those without.
+fn material_of(primitive: &Primitive, reads: &[Reads]) -> usize {
+    primitive.material.map_or(reads.len() - 1, |material| material.value())
 }
 
 /// The size of all that is shown.
 pub(super) fn total_size(
     document: &Document<'_>,
     instances: &[Instance<'_>],
+    reads: &[Reads],
 ) -> Result<Size, LoadError> {
     let mut total = Size::default();
     let mut known: Vec<Option<Size>> = vec![None; document.root.meshes.len()];
@@ -71,7 +112,7 @@ pub(super) fn total_size(
         let Some(known) = known.get_mut(mesh.value()) else { continue };
         let size = match *known {
             Some(size) => size,
-            None => *known.insert(size(document, mesh.value())?),
+            None => *known.insert(size(document, mesh.value(), reads)?),
         };
         total = total + size;
     }
@@ -79,12 +120,12 @@ pub(super) fn total_size(
 }
 
 /// The size of a mesh, from what its accessors promise and their buffers can hold. Arrays that primitives share count once.
-fn size(document: &Document<'_>, mesh: usize) -> Result<Size, LoadError> {
+fn size(document: &Document<'_>, mesh: usize, reads: &[Reads]) -> Result<Size, LoadError> {
     let mut size = Size::default();
     let mut seen = HashMap::new();
     for primitive in document.root.meshes.get(mesh).iter().flat_map(|mesh| &mesh.primitives) {
-        let Some(arrays) = vertex_arrays(primitive) else { continue };
-        let vertices = accessor::open(document, arrays.0)?.count as u64;
+        let Some(arrays) = vertex_arrays(primitive, reads) else { continue };
+        let vertices = accessor::open(document, arrays.positions)?.count as u64;
         let corners = match primitive.indices {
             Some(indices) => accessor::open(document, indices.value())?.count as u64,
             None => vertices,
@@ -106,6 +147,7 @@ fn size(document: &Document<'_>, mesh: usize) -> Result<Size, LoadError> {
 pub(super) fn add(
     document: &Document<'_>,
     instance: &Instance<'_>,
+    reads: &[Reads],
     raw: &mut RawMesh,
     notes: &mut Notes,
 ) -> Result<(), LoadError> {
@@ -119,11 +161,10 @@ pub(super) fn add(
         notes.say("morph targets are left out: shown as stored");
     }
 
-    let default_material = document.root.materials.len();
     let mut shared: HashMap<VertexArrays, u32> = HashMap::new();
     for (p, primitive) in mesh.primitives.iter().enumerate() {
         let place = || format!("meshes[{mesh_index}].primitives[{p}]");
-        let Some(arrays) = vertex_arrays(primitive) else { continue };
+        let Some(arrays) = vertex_arrays(primitive, reads) else { continue };
         let mode = match primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
                 mode
@@ -144,7 +185,7 @@ pub(super) fn add(
         };
 
         // The corners, in range.
-        let count = accessor::open(document, arrays.0)?.count;
+        let count = accessor::open(document, arrays.positions)?.count;
         let corners = match primitive.indices {
             None => (0..count as u32).collect(),
             Some(indices) => {
@@ -191,7 +232,7 @@ pub(super) fn add(
             }
             _ => corners.chunks_exact(3).for_each(|c| push([c[0], c[1], c[2]])),
         }
-        let material = primitive.material.map_or(default_material, |material| material.value());
+        let material = material_of(primitive, reads);
         raw.materials.resize(raw.triangles.len(), material as MaterialId);
     }
     Ok(())
@@ -201,10 +242,11 @@ pub(super) fn add(
 fn add_vertices(
     document: &Document<'_>,
     instance: &Instance<'_>,
-    (positions, normals, colors): VertexArrays,
+    arrays: VertexArrays,
     raw: &mut RawMesh,
     notes: &mut Notes,
 ) -> Result<(), LoadError> {
+    let VertexArrays { positions, normals, colors, texture_coordinates, tangents } = arrays;
     let to_world = instance.to_world;
     let first = raw.positions.len();
     let open = |index: usize, components: &[usize], count: Option<usize>| {
@@ -249,6 +291,26 @@ fn add_vertices(
         open(colors, &[3, 4], Some(count))?.read::<3>(|c| raw.colors.push(Rgb::from(c)));
     } else if !raw.colors.is_empty() {
         raw.colors.resize(first + count, Rgb::ONE);
+    }
+
+    for (coordinates, accessor) in raw.texture_coordinates.iter_mut().zip(texture_coordinates) {
+        if let Some(accessor) = accessor {
+            coordinates.resize(first, [0.0; 2]);
+            open(accessor, &[2], Some(count))?.read::<2>(|uv| coordinates.push(uv));
+        } else if !coordinates.is_empty() {
+            coordinates.resize(first + count, [0.0; 2]);
+        }
+    }
+    if let Some(tangents) = tangents {
+        // Where a node mirrors, what was to the left of the tangent is to its right.
+        let turn = if to_world.mirrors() { -1.0 } else { 1.0 };
+        raw.tangents.resize(first, [0.0; 4]);
+        open(tangents, &[4], Some(count))?.read::<4>(|[x, y, z, sign]| {
+            let Vec3 { x, y, z } = to_world.direction([x, y, z]);
+            raw.tangents.push([x, y, z, turn * sign]);
+        });
+    } else if !raw.tangents.is_empty() {
+        raw.tangents.resize(first + count, [0.0; 4]);
     }
     Ok(())
 }

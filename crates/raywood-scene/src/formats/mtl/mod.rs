@@ -10,20 +10,33 @@
 //! | `d`, or 1 - `Tr` | opacity; what is not opaque is let through, tinted by `Tf` |
 //! | `illum` 4, 6, 7, 9 with `Ni` above 1 | refraction with that index; glass all through if `d` is 1 |
 //! | `Ke` | emission |
-//! | `map_...`, `bump`, `disp`, `refl`, `norm` | textures: not shown yet, said in a warning |
+//! | `map_Kd`, `map_Ks`, `map_Ke` | textures that multiply these colours; a `Kd` or `Ke` of zero counts as one |
+//! | `map_d`, `map_Tr` | opacity: alpha, or how bright the image is if it has none |
+//! | `norm`, `map_Kn` | normals |
+//! | `map_Bump`, `bump`, with `-bm` | heights if the image is gray, else normals |
+//! | `-s`, `-o`, `-clamp` | size, place and edges of a texture |
+//! | `map_Ns`, `map_Pr`, `disp`, `refl` and others | not shown, said in a warning |
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
+use self::map::{ImageFile, Map};
 use super::Input;
+use super::file_name;
+use super::images::{ImageRequests, Use};
 use super::notes::{Notes, counted};
 use super::text::Cursor;
 use crate::error::{LoadError, Place, quoted};
 use crate::load::read_file;
-use crate::{Material, Rgb};
+use crate::{Material, Rgb, SurfaceTextures};
+
+mod map;
 
 /// Materials by the bytes of their names.
-pub(crate) type Library = HashMap<Vec<u8>, Material>;
+pub(crate) type Library = HashMap<Vec<u8>, Definition>;
+
+/// The images of the materials in use.
+pub(crate) type Images = ImageRequests<ImageFile>;
 
 /// Reads the files that the operand of an `mtllib` names, beside the OBJ file: one file whose name has spaces, or several with
 /// spaces between (`\ ` stands for one within a name). A file that is not there is a fault that can be mended.
@@ -34,7 +47,8 @@ pub(crate) fn load_named(
     notes: &mut Notes,
     library: &mut Library,
 ) -> Result<(), LoadError> {
-    let is_there = |name: &Vec<u8>| find(input.path, name).is_some();
+    let folder = input.path.parent().unwrap_or(Path::new(""));
+    let is_there = |name: &Vec<u8>| file_name::find(folder, name).is_some();
     let mut names = vec![operand.to_vec()];
     if !is_there(&names[0]) {
         let several = split_names(operand);
@@ -43,7 +57,7 @@ pub(crate) fn load_named(
         }
     }
     for name in names {
-        match find(input.path, &name) {
+        match file_name::find(folder, &name) {
             Some(path) => load(&path, input.options.strict, notes, library)?,
             None => {
                 let problem = format!("material file {} is not there", quoted(&name));
@@ -52,15 +66,6 @@ pub(crate) fn load_named(
         }
     }
     Ok(())
-}
-
-/// Where a file named in an OBJ file is: as named, else with the strokes of Windows turned, else right beside it.
-fn find(obj: &Path, name: &[u8]) -> Option<PathBuf> {
-    let name = std::str::from_utf8(name).ok().filter(|name| !name.is_empty())?;
-    let folder = obj.parent().unwrap_or(Path::new(""));
-    let turned = name.replace('\\', "/");
-    let bare = turned.rsplit('/').next().unwrap_or_default().to_owned();
-    [name.to_owned(), turned, bare].iter().map(|n| folder.join(n)).find(|path| path.is_file())
 }
 
 /// Names with blanks between them.
@@ -94,13 +99,14 @@ fn load(
         notes: Notes::new(path, strict),
         textures: BTreeSet::new(),
     };
-    for (name, definition) in parser.parse()? {
-        let material = definition.material(String::from_utf8_lossy(&name).into_owned());
+    for (name, mut definition) in parser.parse()? {
+        definition.folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let material = definition.plain_material();
         if material.transmission == Rgb::ONE && material.ior == 1.0 {
             let name = quoted(&name);
             parser.notes.say(format!("material {name} is wholly transparent: it will not be seen"));
         }
-        library.entry(name).or_insert(material);
+        library.entry(name).or_insert(definition);
     }
     let Parser { notes: mut own, textures, .. } = parser;
     if !textures.is_empty() {
@@ -108,7 +114,7 @@ fn load(
         let kinds = kinds.into_iter().collect::<Vec<_>>().join(", ");
         let files = textures.iter().map(|(file, _)| file).collect::<BTreeSet<_>>().len();
         let verb = if files == 1 { "is" } else { "are" };
-        own.say(format!("{} {verb} not shown yet: {kinds}", counted(files, "texture")));
+        own.say(format!("{} {verb} not shown: {kinds}", counted(files, "texture")));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     notes.append(own, &name);
@@ -117,7 +123,7 @@ fn load(
 
 /// A material as the file gives it.
 #[derive(Debug, Default)]
-struct Definition {
+pub(crate) struct Definition {
     diffuse: Option<Rgb>,
     specular: Option<Rgb>,
     emission: Option<Rgb>,
@@ -127,6 +133,15 @@ struct Definition {
     transparency: Option<f32>,
     filter: Option<Rgb>,
     illumination: Option<i64>,
+    /// Its maps of colours, opacity and normals, and whether these may be heights.
+    diffuse_map: Option<Map>,
+    specular_map: Option<Map>,
+    emission_map: Option<Map>,
+    opacity_map: Option<Map>,
+    normal_map: Option<Map>,
+    may_be_heights: bool,
+    /// Where the file is, beside which images are sought.
+    folder: PathBuf,
 }
 
 /// A file on the way.
@@ -162,7 +177,7 @@ impl Parser<'_> {
                     self.cursor.skip_blanks();
                     material.illumination = self.cursor.integer();
                 }
-                _ => self.texture(word),
+                _ => Self::map(&mut self.cursor, &mut self.textures, material, word),
             }
             self.cursor.next_line();
         }
@@ -218,33 +233,89 @@ impl Parser<'_> {
     }
 
     /// A statement that names a texture, or one that means nothing here.
-    fn texture(&mut self, word: &[u8]) {
+    fn map(
+        cursor: &mut Cursor<'_>,
+        unknown: &mut BTreeSet<(Vec<u8>, &'static str)>,
+        material: &mut Definition,
+        word: &[u8],
+    ) {
         let kind = match &word.to_ascii_lowercase()[..] {
-            b"map_kd" => "diffuse",
+            b"map_kd" => return material.diffuse_map = Map::read(cursor),
+            b"map_ks" => return material.specular_map = Map::read(cursor),
+            b"map_ke" => return material.emission_map = Map::read(cursor),
+            b"map_d" | b"map_tr" => return material.opacity_map = Map::read(cursor),
+            b"norm" | b"map_kn" => {
+                material.may_be_heights = false;
+                return material.normal_map = Map::read(cursor);
+            }
+            b"map_bump" | b"bump" => {
+                // Normals are better than heights.
+                if material.normal_map.is_none() || material.may_be_heights {
+                    material.may_be_heights = true;
+                    material.normal_map = Map::read(cursor);
+                }
+                return;
+            }
             b"map_ka" => "ambient",
-            b"map_ks" => "specular",
             b"map_ns" => "shininess",
-            b"map_ke" => "emission",
-            b"map_d" | b"map_tr" => "opacity",
-            b"map_bump" | b"bump" => "bump",
-            b"norm" | b"map_kn" => "normal",
             b"disp" => "displacement",
             b"decal" => "decal",
             b"refl" => "reflection",
             other if other.starts_with(b"map_p") => "roughness and metal",
             _ => return,
         };
-        self.textures.insert((self.cursor.rest_of_line().to_vec(), kind));
+        unknown.insert((cursor.rest_of_line().to_vec(), kind));
     }
 }
 
 impl Definition {
-    /// As Whitted's method can show it: see the table at the top.
-    fn material(&self, name: String) -> Material {
+    /// As Whitted's method can show it: see the table at the top. Its textures' images are asked for.
+    pub(crate) fn material(&self, name: String, images: &mut Images) -> Material {
+        let mut ask = |map: &Option<Map>, use_: Use| {
+            map.as_ref().map(|map| map.texture(&self.folder, use_, images))
+        };
+        let normal_use = if self.may_be_heights { Use::Bumps } else { Use::Normals };
+        let textures = SurfaceTextures {
+            color: ask(&self.diffuse_map, Use::Color),
+            specular_color: ask(&self.specular_map, Use::ColorFactors),
+            emission: ask(&self.emission_map, Use::Emission),
+            opacity_map: ask(&self.opacity_map, Use::Opacity),
+            opacity: self.opacity_map.as_ref().map(|_| self.opacity()),
+            normal: ask(&self.normal_map, normal_use)
+                .map(|texture| (texture, self.normal_map.as_ref().map_or(1.0, |map| map.strength))),
+            ..SurfaceTextures::default()
+        };
+        let mut material = Material { name, ..self.plain_material() };
+        if textures != SurfaceTextures::default() {
+            material.textures = Some(Box::new(textures));
+        }
+        material
+    }
+
+    /// How much of the surface is not let through.
+    fn opacity(&self) -> f32 {
+        let opacity = self.dissolve.or(self.transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
+        opacity.clamp(0.0, 1.0)
+    }
+
+    /// The material without its name and textures.
+    fn plain_material(&self) -> Material {
         let base = Material::default();
         let illumination = self.illumination.unwrap_or(2);
         let specular = self.specular.unwrap_or(Rgb::ZERO);
-        let mut diffuse = self.diffuse.unwrap_or(base.diffuse);
+        // A texture is never meant to be multiplied by nothing.
+        let unless_black = |color: Option<Rgb>, other: Rgb| match color {
+            Some(color) if color != Rgb::ZERO => color,
+            _ => other,
+        };
+        let mut diffuse = match self.diffuse_map {
+            Some(_) => unless_black(self.diffuse, Rgb::ONE),
+            None => self.diffuse.unwrap_or(base.diffuse),
+        };
+        let emission = match self.emission_map {
+            Some(_) => unless_black(self.emission, Rgb::ONE),
+            None => self.emission.unwrap_or(Rgb::ZERO),
+        };
 
         // Highlights. Exponents below one are how exporters say that there is none.
         let shininess = self.shininess.unwrap_or(base.shininess);
@@ -255,14 +326,13 @@ impl Definition {
         let refracts = matches!(self.illumination, Some(4 | 6 | 7 | 9) | None);
         let ior = self.ior.filter(|ior| refracts && (1.0..=10.0).contains(ior)).unwrap_or(1.0);
         let filter = self.filter.unwrap_or(Rgb::ONE).min(Rgb::ONE);
-        let opacity = self.dissolve.or(self.transparency.map(|t| 1.0 - t)).unwrap_or(1.0);
-        let opacity = opacity.clamp(0.0, 1.0);
+        // A map of opacity has the factor too.
+        let opacity = if self.opacity_map.is_some() { 1.0 } else { self.opacity() };
         let is_glass = self.illumination.is_some() && ior > 1.0 && opacity == 1.0;
         let transmission = if is_glass { filter } else { (1.0 - opacity) * filter };
         diffuse = if is_glass { Rgb::ZERO } else { opacity * diffuse };
 
         Material {
-            name,
             diffuse,
             specular: if has_highlight { specular.min(Rgb::ONE) } else { Rgb::ZERO },
             shininess: shininess.clamp(1.0, 1e5),
@@ -272,7 +342,7 @@ impl Definition {
             },
             transmission,
             ior,
-            emission: self.emission.unwrap_or(Rgb::ZERO),
+            emission,
             ..base
         }
     }
