@@ -104,6 +104,11 @@ impl CameraRays {
         direction / direction.length()
     }
 
+    /// How wide a pixel is at distance 1, in the middle of the picture.
+    pub(crate) fn pixel_width(&self) -> f32 {
+        self.step_x.length()
+    }
+
     /// Where all rays start.
     #[inline(always)]
     pub(crate) fn eye(&self) -> Vec3 {

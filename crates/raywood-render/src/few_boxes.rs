@@ -2,20 +2,17 @@
 
 use raywood::Aabb;
 
-/// More boxes than this cost a shadow ray more than they save.
-const MOST: usize = 8;
-
 /// A division must leave less than this share of a box's surface, or it is not made.
 const WORTHWHILE: f64 = 0.8;
 
-/// At most eight boxes that together hold all the given ones, small where things lie apart: the largest is divided in two at the place that leaves
+/// At most so many boxes that together hold all the given ones, small where things lie apart: the largest is divided in two at the place that leaves
 /// the least surface, again and again. O(n log n).
-pub(crate) fn few_boxes(boxes: Vec<Aabb>) -> Vec<Aabb> {
+pub(crate) fn few_boxes(boxes: Vec<Aabb>, most: usize) -> Vec<Aabb> {
     let mut finished = Vec::new();
     let mut groups = vec![(union(&boxes), boxes)];
     groups.retain(|(bounds, _)| !bounds.is_empty());
     while !groups.is_empty() {
-        if finished.len() + groups.len() == MOST {
+        if finished.len() + groups.len() == most {
             finished.extend(groups.into_iter().map(|(bounds, _)| bounds));
             break;
         }
@@ -79,7 +76,7 @@ mod tests {
     fn things_that_lie_apart_get_boxes_of_their_own() {
         let places = [0.0, 100.0, 30.0];
         let boxes = places.iter().flat_map(|&x| [cube(x, 0.0, 5.0), cube(x + 0.5, 0.0, 5.0)]);
-        let mut found = few_boxes(boxes.collect());
+        let mut found = few_boxes(boxes.collect(), 8);
         found.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         let expected = [0.0, 30.0, 100.0].map(|x| cube(x, 0.0, 5.0).union(cube(x + 0.5, 0.0, 5.0)));
         assert_eq!(found, expected);
@@ -87,12 +84,12 @@ mod tests {
 
     #[test]
     fn few_boxes_hold_many() {
-        assert!(few_boxes(Vec::new()).is_empty());
+        assert!(few_boxes(Vec::new(), 8).is_empty());
         let boxes: Vec<_> = (0..200)
             .map(|i| cube((i * 37 % 101) as f32, (i * 53 % 97) as f32, (i * 71 % 89) as f32))
             .collect();
-        let found = few_boxes(boxes.clone());
-        assert!(found.len() <= MOST);
+        let found = few_boxes(boxes.clone(), 8);
+        assert!(found.len() <= 8);
         for b in boxes {
             assert!(found.iter().any(|f| f.union(b) == *f), "{b:?} is in none of {found:?}");
         }

@@ -57,7 +57,13 @@ pub fn refract(d: Vec3, n: Vec3, eta: f32, cos_transmitted: f32) -> Vec3 {
 /// Schlick's approximation (1994) of a mirror that rises to one towards grazing angles, from what it mirrors head-on.
 #[inline(always)]
 pub fn schlick(head_on: Rgb, cos_incident: f32) -> Rgb {
+    schlick_to(head_on, 1.0, cos_incident)
+}
+
+/// As [`schlick`], of a mirror that rises to `grazing`.
+#[inline(always)]
+pub fn schlick_to(head_on: Rgb, grazing: f32, cos_incident: f32) -> Rgb {
     let x = (1.0 - cos_incident).clamp(0.0, 1.0);
     let x2 = x * x;
-    head_on + (x2 * x2 * x) * (Rgb::ONE - head_on)
+    head_on + (x2 * x2 * x) * (Rgb::splat(grazing) - head_on)
 }

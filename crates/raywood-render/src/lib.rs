@@ -16,12 +16,14 @@ mod png;
 mod power;
 mod prepared;
 mod progress;
+mod ray_cone;
 mod render;
 mod rgb_image;
 mod sampling;
 mod shading;
 mod shadows;
 mod stats;
+mod textured;
 mod tiles;
 mod view;
 

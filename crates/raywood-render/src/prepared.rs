@@ -7,6 +7,7 @@ use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
 
 use crate::few_boxes::few_boxes;
+use crate::textured::TexturedMaterial;
 
 /// All surfaces of a scene: first its triangles, then its spheres.
 pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
@@ -20,6 +21,10 @@ pub struct PreparedScene<'a> {
     triangle_count: u32,
     axes: Axes,
     transmissive_bounds: Vec<Aabb>,
+    perforated_bounds: Vec<Aabb>,
+    /// Of each material what its textures make of it.
+    textured: Vec<Option<TexturedMaterial<'a>>>,
+    is_textured: bool,
 }
 
 impl<'a> PreparedScene<'a> {
@@ -69,12 +74,18 @@ impl<'a> PreparedScene<'a> {
     /// Takes a structure over the scene's [surfaces](Self::surfaces) that is already there.
     pub fn from_structure(scene: &'a Scene, structure: Structure<Surfaces<'a>>) -> Self {
         // The default comes last, for the surfaces without a material.
-        let materials: Vec<_> = scene
+        let mut materials: Vec<_> = scene
             .materials
             .iter()
             .chain([&Material::default()])
             .map(SurfaceMaterial::new)
             .collect();
+        let textured: Vec<_> =
+            scene.materials.iter().map(|m| TexturedMaterial::new(m, &scene.images)).collect();
+        for (material, textured) in materials.iter_mut().zip(&textured) {
+            material.perforated = textured.as_ref().is_some_and(|t| t.is_perforated);
+        }
+        let is_textured = textured.iter().any(Option::is_some);
         let mut prepared = Self {
             scene,
             structure,
@@ -83,8 +94,13 @@ impl<'a> PreparedScene<'a> {
             triangle_count: scene.mesh.triangles.len() as u32,
             axes: scene.axes(),
             transmissive_bounds: Vec::new(),
+            perforated_bounds: Vec::new(),
+            textured,
+            is_textured,
         };
-        prepared.transmissive_bounds = prepared.find_transmissive_bounds();
+        prepared.perforated_bounds = prepared.bounds_of(|material| material.perforated);
+        prepared.transmissive_bounds =
+            prepared.bounds_of(|material| material.transmissive | material.perforated);
         prepared
     }
 
@@ -140,6 +156,12 @@ impl<'a> PreparedScene<'a> {
         &self.materials[index as usize]
     }
 
+    /// How many materials there are.
+    #[inline(always)]
+    pub(crate) fn material_count(&self) -> u32 {
+        self.materials.len() as u32
+    }
+
     /// The number of the material of a primitive.
     #[inline(always)]
     pub(crate) fn material_index(&self, primitive: u32) -> usize {
@@ -151,21 +173,35 @@ impl<'a> PreparedScene<'a> {
         id.map_or(last, |&id: &MaterialId| (id as usize).min(last))
     }
 
-    /// Boxes outside of which no surface lets light through: empty if none does anywhere.
-    pub(crate) fn transmissive_bounds(&self) -> &[Aabb] {
-        &self.transmissive_bounds
+    /// Whether any surface may be textured.
+    #[inline(always)]
+    pub(crate) fn is_textured(&self) -> bool {
+        self.is_textured
     }
 
-    /// A few boxes around all primitives that let light through.
-    fn find_transmissive_bounds(&self) -> Vec<Aabb> {
-        if !self.materials.iter().any(|material| material.transmissive) {
+    /// What textures make of a material, by its [number](Self::material_index); nothing if it has none.
+    #[inline(always)]
+    pub(crate) fn textured_material(&self, index: u32) -> Option<&TexturedMaterial<'a>> {
+        self.textured.get(index as usize)?.as_ref()
+    }
+
+    /// Boxes outside of which no surface lets light through: empty if none does anywhere. With `opaque` only holes do.
+    pub(crate) fn transmissive_bounds(&self, opaque: bool) -> &[Aabb] {
+        if opaque { &self.perforated_bounds } else { &self.transmissive_bounds }
+    }
+
+    /// A few boxes around all primitives of some materials.
+    fn bounds_of(&self, is_wanted: impl Fn(&SurfaceMaterial) -> bool) -> Vec<Aabb> {
+        if !self.materials.iter().any(&is_wanted) {
             return Vec::new();
         }
         let geometry = self.structure.geometry();
-        let transmissive =
-            |primitive: &u32| self.materials[self.material_index(*primitive)].transmissive;
-        let primitives = (0..geometry.len() as u32).filter(transmissive);
-        few_boxes(primitives.map(|primitive| geometry.bounds(primitive)).collect())
+        let wanted = |primitive: &u32| is_wanted(&self.materials[self.material_index(*primitive)]);
+        let primitives = (0..geometry.len() as u32).filter(wanted);
+        // More boxes than this cost a shadow ray more than they save; holes are often many small things all over the place.
+        let has_holes = self.materials.iter().any(|material| material.perforated);
+        let most = if has_holes { 32 } else { 8 };
+        few_boxes(primitives.map(|primitive| geometry.bounds(primitive)).collect(), most)
     }
 }
 
@@ -187,6 +223,8 @@ pub(crate) struct SurfaceMaterial {
     pub(crate) specular: Rgb,
     pub(crate) shininess: f32,
     pub(crate) mirror: Rgb,
+    /// The share mirrored at grazing angles.
+    pub(crate) grazing: f32,
     pub(crate) transmission: Rgb,
     pub(crate) ior: f32,
     pub(crate) absorption: Vec3,
@@ -197,32 +235,62 @@ pub(crate) struct SurfaceMaterial {
     pub(crate) mirrors: bool,
     /// Whether lights leave a highlight.
     pub(crate) shiny: bool,
+    /// Whether there may be points where not all of the surface is there.
+    pub(crate) perforated: bool,
+    /// How much of the surface is there; the rest lets rays straight on.
+    pub(crate) opacity: f32,
+    /// How much of the ambient light arrives.
+    pub(crate) ambient: f32,
 }
 
 impl SurfaceMaterial {
     fn new(material: &Material) -> Self {
-        let finite_or = |x: f32, other: f32| if x.is_finite() { x } else { other };
-        let positive = |color: Rgb| Rgb::from(color.to_array().map(|x| finite_or(x, 0.0).max(0.0)));
-        let share = |color: Rgb| positive(color).min(Rgb::ONE);
-
-        let transmission = share(material.transmission);
-        let transmissive = transmission.max_element() > 0.0;
-        let mirror = if transmissive { Rgb::ZERO } else { share(material.mirror) };
-        let specular = positive(material.specular);
-        let ior = finite_or(material.ior, 1.0);
-        Self {
-            diffuse: positive(material.diffuse),
+        let mut safe = Self {
+            diffuse: material.diffuse,
             pattern: material.pattern,
-            specular,
-            shininess: finite_or(material.shininess, 50.0).max(0.0),
-            mirror,
-            transmission,
-            ior: if ior > 0.0 { ior } else { 1.0 },
+            specular: material.specular,
+            shininess: material.shininess,
+            mirror: material.mirror,
+            grazing: 1.0,
+            transmission: material.transmission,
+            ior: material.ior,
             absorption: positive(material.absorption),
             emission: positive(material.emission),
-            transmissive,
-            mirrors: mirror.max_element() > 0.0,
-            shiny: specular.max_element() > 0.0,
-        }
+            transmissive: false,
+            mirrors: false,
+            shiny: false,
+            perforated: false,
+            opacity: 1.0,
+            ambient: 1.0,
+        };
+        safe.make_safe();
+        safe
     }
+
+    /// Brings numbers into their range and answers the questions that follow from them.
+    #[inline(always)]
+    pub(crate) fn make_safe(&mut self) {
+        let share = |color: Rgb| positive(color).min(Rgb::ONE);
+        self.diffuse = positive(self.diffuse);
+        self.transmission = share(self.transmission);
+        self.transmissive = self.transmission.max_element() > 0.0;
+        self.mirror = if self.transmissive { Rgb::ZERO } else { share(self.mirror) };
+        self.mirrors = self.mirror.max_element() > 0.0;
+        self.specular = positive(self.specular);
+        self.shiny = self.specular.max_element() > 0.0;
+        self.shininess = finite_or(self.shininess, 50.0).max(0.0);
+        let ior = finite_or(self.ior, 1.0);
+        self.ior = if ior > 0.0 { ior } else { 1.0 };
+    }
+}
+
+#[inline(always)]
+fn finite_or(x: f32, other: f32) -> f32 {
+    if x.is_finite() { x } else { other }
+}
+
+#[inline(always)]
+fn positive(color: Rgb) -> Rgb {
+    let channel = |x: f32| finite_or(x, 0.0).max(0.0);
+    Rgb::new(channel(color.x), channel(color.y), channel(color.z))
 }

@@ -7,6 +7,7 @@ use crate::PreparedScene;
 use crate::fresnel::dielectric;
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::prepared::SurfaceMaterial;
+use crate::textured::opacity_at;
 
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 pub(crate) const MOST_CROSSINGS: u32 = 32;
@@ -71,16 +72,25 @@ pub(crate) struct Passage {
 ///
 /// What is transparent lets light through in a straight line, unbent. Each surface takes its Fresnel reflection and tints
 /// like a filter; the inside absorbs by its thickness. Bent light would gather in bright caustics, which Whitted's method
-/// does not follow; straight light at least does not make glass black.
-pub(crate) fn passage(prepared: &PreparedScene<'_>, ray: &Ray, hit: &Hit) -> Option<Passage> {
+/// does not follow; straight light at least does not make glass black. Holes let all light through. With `opaque` nothing but holes lets light
+/// through.
+pub(crate) fn passage(
+    prepared: &PreparedScene<'_>,
+    ray: &Ray,
+    hit: &Hit,
+    opaque: bool,
+) -> Option<Passage> {
     let material = prepared.material_of(hit.primitive);
-    if !material.transmissive {
+    let opacity = if material.perforated { opacity_at(prepared, hit) } else { 1.0 };
+    let transmissive = material.transmissive && !opaque;
+    if !transmissive && opacity >= 1.0 {
         return None;
     }
     let surface = prepared.structure().surface_point(ray, hit);
     let length = ray.direction.length();
     let cosine = ray.direction.dot(surface.normal) / length;
-    let share = filter(material, cosine, hit.t * length);
+    let share = if transmissive { filter(material, cosine, hit.t * length) } else { Rgb::ZERO };
+    let share = if opacity < 1.0 { Rgb::splat(1.0 - opacity) + opacity * share } else { share };
     Some(Passage { share, origin: surface.origin_towards(ray.direction) })
 }
 

@@ -78,7 +78,13 @@ fn as_text(
     if scene.spheres.len() > 0 {
         line("spheres", &thousands(scene.spheres.len() as u64));
     }
-    let given = [(!mesh.normals.is_empty(), "normals"), (!mesh.colors.is_empty(), "colours")];
+    let has_coordinates = mesh.texture_coordinates.iter().any(|set| !set.is_empty());
+    let given = [
+        (!mesh.normals.is_empty(), "normals"),
+        (!mesh.colors.is_empty(), "colours"),
+        (has_coordinates, "texture coordinates"),
+        (!mesh.tangents.is_empty(), "tangents"),
+    ];
     let given: Vec<_> = given.iter().filter(|(given, _)| *given).map(|(_, name)| *name).collect();
     line(
         "per vertex",
@@ -95,6 +101,10 @@ fn as_text(
     line("materials", &scene.materials.len().to_string());
     for material in &scene.materials {
         line("", &format!("{}: {}", name_or(&material.name), describe(material)));
+    }
+    if !scene.images.is_empty() {
+        let bytes: usize = scene.images.iter().map(|image| image.bytes()).sum();
+        line("images", &format!("{}, {:.1} MB", scene.images.len(), bytes as f64 / 1e6));
     }
     line("lights", &scene.lights.len().to_string());
     for light in &scene.lights {

@@ -7,5 +7,6 @@ mod heat_map;
 mod optics;
 mod references;
 mod rendering;
+mod textures;
 mod view;
 mod whitted;

@@ -72,7 +72,8 @@ impl ColouredShadows {
                 pixels[pixel as usize] += brought * share;
                 continue;
             };
-            let passed = passage(frame.scene, &rays[number], hit);
+            let opaque = frame.options.opaque_shadows;
+            let passed = passage(frame.scene, &rays[number], hit, opaque);
             let Some(Passage { share: passed, origin }) = passed else { continue };
             let share = share * passed;
             let crossings = crossings + 1;

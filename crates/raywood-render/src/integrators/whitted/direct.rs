@@ -73,8 +73,7 @@ impl DirectLight {
         pixels: &mut TilePixels,
         counts: &mut RayCounts,
     ) {
-        let opaque = frame.options.opaque_shadows;
-        let bounds = if opaque { &[] } else { frame.scene.transmissive_bounds() };
+        let bounds = frame.scene.transmissive_bounds(frame.options.opaque_shadows);
         let Self { shadows, parallel, blocked, suspects, coloured, .. } = self;
         for (number, (light, shadows)) in frame.lights.directed.iter().zip(shadows).enumerate() {
             if shadows.origins.len() < fewest {

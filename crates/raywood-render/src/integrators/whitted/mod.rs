@@ -6,14 +6,18 @@
 //! Rays are not followed one by one but in waves of those that belong together: the primary rays of a tile, the mirrored ones of a depth, the
 //! shadow rays of a light. Structures trace such rays as packets.
 
+mod bent_normals;
 mod coloured;
 mod columns;
 mod direct;
+mod footprints;
 mod lit_points;
 mod primary;
 mod queue;
 mod shade;
 mod surfaces;
+mod texture_reads;
+mod textured_surfaces;
 mod waves;
 
 use std::cell::RefCell;

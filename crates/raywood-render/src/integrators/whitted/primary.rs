@@ -111,8 +111,8 @@ impl Traced for TracedPrimary<'_> {
     #[inline(always)]
     fn path(&self, ray: usize) -> Path {
         // In air. (An eye inside glass is noticed when the ray leaves it.)
-        let pixel = self.primary.pixels[ray].number;
-        Path { pixel, weight: Rgb::ONE, absorption: Rgb::ZERO }
+        let pixel = self.primary.pixels[ray].number as u16;
+        Path { pixel, holes: 0, weight: Rgb::ONE, absorption: Rgb::ZERO, length: 0.0 }
     }
 
     #[inline(always)]

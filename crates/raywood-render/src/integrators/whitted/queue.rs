@@ -13,11 +13,15 @@ pub(super) const TRACED: usize = 4 * WAVE;
 #[derive(Clone, Copy)]
 pub(super) struct Path {
     /// The pixel of the tile that the light ends up in.
-    pub(super) pixel: u32,
+    pub(super) pixel: u16,
+    /// How many holes it went through since it was last mirrored or bent.
+    pub(super) holes: u16,
     /// What light along the ray counts in the pixel.
     pub(super) weight: Rgb,
     /// Absorption of what the ray runs through, per unit of length.
     pub(super) absorption: Rgb,
+    /// How long the way from the eye to where the ray starts was.
+    pub(super) length: f32,
 }
 
 /// Rays that were traced, and what they hit.
@@ -96,6 +100,16 @@ impl Queue {
     }
 }
 
+/// Where rays wait that follow from those of a wave.
+pub(super) struct Followers<'a> {
+    /// Those that go on through holes.
+    pub(super) straight: &'a mut Queue,
+    /// Those that are mirrored.
+    pub(super) mirrored: &'a mut Queue,
+    /// Those that are let through.
+    pub(super) refracted: &'a mut Queue,
+}
+
 /// The rays that follow from others, by their depth and by what they are. Mirrored rays that come from one plane run as if from one point,
 /// the mirror image of the eye; among others they would not.
 #[derive(Default)]
@@ -111,9 +125,13 @@ impl Waiting {
         self.depths.as_flattened_mut().iter_mut().for_each(Queue::clear);
     }
 
-    /// Where the rays of a depth wait: the mirrored ones, those let through.
-    pub(super) fn at(&mut self, depth: u32) -> &mut [Queue; 2] {
-        &mut self.depths[depth as usize]
+    /// Where the rays that follow from those of a depth wait: those that go through holes, which counts as no step, and those of the next depth, mirrored
+    /// and let through.
+    pub(super) fn after(&mut self, depth: u32) -> Followers<'_> {
+        let (these, next) = self.depths.split_at_mut(depth as usize + 1);
+        let [_, straight] = &mut these[depth as usize];
+        let [mirrored, refracted] = &mut next[0];
+        Followers { straight, mirrored, refracted }
     }
 
     /// Moves as many rays as are traced together to `wave` and tells their depth, if so many wait. The deepest come first, so that no queue ever holds

@@ -1,14 +1,15 @@
 //! Shading: what light comes back along a ray from what it hit, and which rays follow.
 
-use raywood::{Ray, Vec3, Vectorized};
+use raywood::{Ray, SimdLevel, Vec3, Vectorized};
 use raywood_scene::Rgb;
 
 use super::columns::get;
 use super::direct::DirectLight;
 use super::lit_points::LitPoint;
-use super::queue::{Path, Queue, Traced};
+use super::queue::{Followers, Path, Traced};
 use super::surfaces::Surfaces;
-use crate::fresnel::{Interface, dielectric, refract, schlick};
+use super::textured_surfaces::{TextureMemory, TextureSurfaces};
+use crate::fresnel::{Interface, dielectric, refract, schlick_to};
 use crate::integrators::Frame;
 use crate::shading::{Surface, keep_on_side};
 use crate::shadows::transmittance;
@@ -21,8 +22,8 @@ pub(super) struct Shader<'a> {
     pub(super) pixels: &'a mut TilePixels,
     pub(super) counts: &'a mut RayCounts,
     pub(super) direct: &'a mut DirectLight,
-    /// Where mirrored rays wait, and those that are let through.
-    pub(super) followers: &'a mut [Queue; 2],
+    /// Where the rays wait that follow.
+    pub(super) followers: Followers<'a>,
     /// Whether rays may follow at all.
     pub(super) goes_on: bool,
 }
@@ -32,6 +33,9 @@ pub(super) struct ShadeWave<'a, 'b, W> {
     pub(super) shader: Shader<'a>,
     pub(super) wave: W,
     pub(super) surfaces: &'b mut Surfaces,
+    pub(super) memory: &'b mut TextureMemory,
+    /// What loops are compiled for.
+    pub(super) level: SimdLevel,
 }
 
 impl<W: Traced> Vectorized for ShadeWave<'_, '_, W> {
@@ -39,12 +43,19 @@ impl<W: Traced> Vectorized for ShadeWave<'_, '_, W> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { mut shader, wave, surfaces } = self;
+        let Self { mut shader, wave, surfaces, memory, level } = self;
         let scene = shader.frame.scene;
+        // One of several rays of a pixel stands for a part of it.
+        let frame = shader.frame;
+        let spread = frame.camera.pixel_width() / (frame.options.samples as f32).sqrt();
         surfaces.find(scene, &wave, |ray| {
             let path = wave.path(ray);
             shader.add(&path, path.weight * scene.background(wave.direction(ray)));
         });
+        if scene.is_textured() {
+            surfaces.find_lengths(&wave);
+            level.run(TextureSurfaces { scene, surfaces: &mut *surfaces, memory, spread });
+        }
         shader.direct.begin();
         for number in 0..surfaces.count() {
             shader.shade(&wave, surfaces, number);
@@ -68,7 +79,18 @@ impl Shader<'_> {
             path.absorption
         };
         let weight = path.weight * transmittance(absorption, surfaces.distance(number));
-        let here = Path { weight, absorption, ..path };
+        let length = path.length + surfaces.distance(number);
+        let mut here = Path { weight, absorption, length, ..path };
+
+        // Go on through what is not there.
+        if material.opacity < 1.0 && path.holes < MOST_HOLES {
+            self.go_straight(&surface, direction, &here, path.absorption);
+            here.weight = material.opacity * weight;
+            if here.weight == Rgb::ZERO {
+                return;
+            }
+        }
+        here.holes = 0;
 
         // Share out the light between mirror and body.
         let cos_view = surface.cos_towards(direction);
@@ -76,7 +98,7 @@ impl Shader<'_> {
             let interface = dielectric(cos_view, eta(&surface));
             (Rgb::splat(interface.reflectance), Some(interface))
         } else if material.mirrors {
-            (schlick(material.mirror, cos_view), None)
+            (schlick_to(material.mirror, material.grazing, cos_view), None)
         } else {
             (Rgb::ZERO, None)
         };
@@ -93,7 +115,7 @@ impl Shader<'_> {
 
     #[inline(always)]
     fn add(&mut self, path: &Path, light: Rgb) {
-        self.pixels[path.pixel as usize] += light;
+        self.pixels[usize::from(path.pixel)] += light;
     }
 
     /// Adds what the surface sends out by itself and of the ambient light, and has the other lights look at it. `body` is the share that is
@@ -102,17 +124,36 @@ impl Shader<'_> {
     fn lights(&mut self, surface: &Surface<'_>, number: usize, here: &Path, body: Rgb) {
         let material = surface.material;
         let diffuse = here.weight * (body * surface.diffuse);
-        self.add(here, here.weight * material.emission + self.frame.lights.ambient * diffuse);
+        let ambient = material.ambient * self.frame.lights.ambient;
+        self.add(here, here.weight * material.emission + ambient * diffuse);
         if !material.shiny && diffuse == Rgb::ZERO {
             return;
         }
         let point = LitPoint {
-            pixel: here.pixel,
+            pixel: here.pixel.into(),
             diffuse,
             specular: here.weight * material.specular,
             shininess: if material.shiny { Some(material.shininess) } else { None },
         };
         self.direct.light(number, point);
+    }
+
+    /// Follows the light that comes through holes in the surface, if it is worth a ray. That is no step of the path, but there is an end to it too.
+    #[inline(always)]
+    fn go_straight(
+        &mut self,
+        surface: &Surface<'_>,
+        direction: Vec3,
+        here: &Path,
+        absorption: Rgb,
+    ) {
+        let weight = (1.0 - surface.material.opacity) * here.weight;
+        if weight.max_element() < self.frame.options.cutoff {
+            return;
+        }
+        self.counts.refraction += 1;
+        let next = Path { weight, absorption, holes: here.holes + 1, ..*here };
+        self.followers.straight.push(surface.point.spawn(direction), next);
     }
 
     /// Follows the light that the surface mirrors, if it is worth a ray.
@@ -127,8 +168,7 @@ impl Shader<'_> {
     ) {
         let Some(next) = self.next(here, mirror, here.absorption) else { return };
         self.counts.reflection += 1;
-        let [reflected, _] = &mut *self.followers;
-        reflected.push(Ray::new(origin, surface.mirrored(direction)), next);
+        self.followers.mirrored.push(Ray::new(origin, surface.mirrored(direction)), next);
     }
 
     /// Follows the light that the surface lets through, if it is worth a ray.
@@ -151,8 +191,7 @@ impl Shader<'_> {
             let bent = refract(direction, surface.normal, eta(surface), interface.cos_transmitted);
             keep_on_side(bent.normalize_or_zero(), -surface.geometric_normal)
         };
-        let [_, refracted] = &mut *self.followers;
-        refracted.push(surface.point.spawn(direction), next);
+        self.followers.refracted.push(surface.point.spawn(direction), next);
     }
 
     /// The path after one more bounce that keeps `share` of the light; `None` if that is one too many or too weak to see.
@@ -163,6 +202,9 @@ impl Shader<'_> {
         goes_on.then_some(Path { weight, absorption, ..*here })
     }
 }
+
+/// Behind so many holes one after the other everything counts as whole.
+const MOST_HOLES: u16 = 256;
 
 /// The index of refraction on the ray's side over the one on the other.
 #[inline(always)]

@@ -17,14 +17,14 @@ pub(super) struct Surfaces {
     /// The number of what it hit.
     primitives: [u32; WAVE],
     /// The number of the material in its scene.
-    materials: [u32; WAVE],
+    pub(super) materials: [u32; WAVE],
     /// Where along the ray, and where on the triangle.
     distances: Column,
-    weights: [Column; 2],
+    pub(super) weights: [Column; 2],
     /// The directions of the rays, unit length.
     pub(super) directions: Columns,
     /// The corners of the triangles, and what the mesh gives there.
-    corners: [Columns; 3],
+    pub(super) corners: [Columns; 3],
     corner_normals: [Columns; 3],
     pub(super) positions: Columns,
     /// The surfaces' own normals.
@@ -36,7 +36,11 @@ pub(super) struct Surfaces {
     pub(super) geometric_normals: Columns,
     pub(super) normals: Columns,
     /// The diffuse colours there.
-    diffuse: Columns,
+    pub(super) diffuse: Columns,
+    /// How long the ways from the eye are; only of scenes with textures.
+    pub(super) lengths: Column,
+    /// The materials of textured surfaces, each with a number after those of the scene.
+    pub(super) textured: Vec<SurfaceMaterial>,
 }
 
 impl Default for Surfaces {
@@ -58,6 +62,8 @@ impl Default for Surfaces {
             geometric_normals: ZERO,
             normals: ZERO,
             diffuse: ZERO,
+            lengths: [0.0; WAVE],
+            textured: Vec::new(),
         }
     }
 }
@@ -89,7 +95,7 @@ impl Surfaces {
 
     /// A surface by itself.
     #[inline(always)]
-    pub(super) fn get<'a>(&self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
+    pub(super) fn get<'a>(&'a self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
         let direction = get(&self.directions, number);
         let point = SurfacePoint {
             position: get(&self.positions, number),
@@ -99,7 +105,10 @@ impl Surfaces {
         Surface {
             outside: is_outside(direction, point.normal),
             point,
-            material: scene.material(self.materials[number]),
+            material: match self.materials[number].checked_sub(scene.material_count()) {
+                None => scene.material(self.materials[number]),
+                Some(own) => &self.textured[own as usize],
+            },
             geometric_normal: get(&self.geometric_normals, number),
             normal: get(&self.normals, number),
             diffuse: get(&self.diffuse, number),
@@ -162,6 +171,14 @@ impl Surfaces {
             }
         }
         self.find_colors(scene, wave);
+    }
+
+    /// Finds how long the ways from the eye to the surfaces are.
+    #[inline(always)]
+    pub(super) fn find_lengths(&mut self, wave: &impl Traced) {
+        for number in 0..self.count() {
+            self.lengths[number] = wave.path(self.ray(number)).length + self.distances[number];
+        }
     }
 
     /// Gathers from all over the scene what the rays hit.

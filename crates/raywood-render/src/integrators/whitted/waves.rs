@@ -7,6 +7,7 @@ use super::primary::{PrimaryRays, SendPrimary, TracedPrimary};
 use super::queue::{Queue, TRACED, Traced, TracedQueue, WAVE, Waiting};
 use super::shade::{ShadeWave, Shader};
 use super::surfaces::Surfaces;
+use super::textured_surfaces::TextureMemory;
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
@@ -20,6 +21,7 @@ pub(super) struct Scratch {
     wave: Queue,
     hits: Vec<Option<Hit>>,
     surfaces: Box<Surfaces>,
+    textures: Box<TextureMemory>,
     direct: DirectLight,
 }
 
@@ -78,7 +80,7 @@ impl<'a> Waves<'a> {
 
     /// Traces ray `index` of every pixel, and shades what they hit.
     fn trace_primary(&mut self, index: u32) {
-        let Scratch { primary, primary_hits: hits, waiting, surfaces, direct, .. } =
+        let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, direct, .. } =
             &mut *self.scratch;
         let Frame { scene, camera, .. } = self.frame;
         self.counts.primary += primary.len() as u64;
@@ -91,10 +93,10 @@ impl<'a> Waves<'a> {
             pixels: self.pixels,
             counts: &mut self.counts,
             direct,
-            followers: waiting.at(1),
+            followers: waiting.after(0),
             goes_on: 0 < self.frame.options.max_depth,
         };
-        shade(shader, TracedPrimary { eye, primary, hits }, surfaces, self.level);
+        shade(shader, TracedPrimary { eye, primary, hits }, (surfaces, textures), self.level);
         self.add_direct_light(FEWEST);
     }
 
@@ -111,19 +113,20 @@ impl<'a> Waves<'a> {
         self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
-            let Scratch { waiting, wave, hits, surfaces, direct, .. } = &mut *self.scratch;
+            let Scratch { waiting, wave, hits, surfaces, textures, direct, .. } =
+                &mut *self.scratch;
             let shader = Shader {
                 frame: self.frame,
                 pixels: self.pixels,
                 counts: &mut self.counts,
                 direct,
-                followers: waiting.at(depth + 1),
+                followers: waiting.after(depth),
                 goes_on: depth < self.frame.options.max_depth,
             };
             let part = first..hits.len().min(first + WAVE);
             let rays = &wave.rays[part.clone()];
             let traced = TracedQueue { rays, paths: &wave.paths[part.clone()], hits: &hits[part] };
-            shade(shader, traced, surfaces, self.level);
+            shade(shader, traced, (surfaces, textures), self.level);
             self.add_direct_light(FEWEST);
         }
     }
@@ -138,9 +141,14 @@ impl<'a> Waves<'a> {
 const FEWEST: usize = TRACED;
 
 /// Shades what a wave hit and sends shadow rays from there.
-fn shade(shader: Shader<'_>, wave: impl Traced, surfaces: &mut Surfaces, level: SimdLevel) {
+fn shade(
+    shader: Shader<'_>,
+    wave: impl Traced,
+    (surfaces, memory): (&mut Surfaces, &mut TextureMemory),
+    level: SimdLevel,
+) {
     let Shader { frame, pixels, counts, direct, followers, goes_on } = shader;
     let shader = Shader { frame, pixels, counts, direct: &mut *direct, followers, goes_on };
-    level.run(ShadeWave { shader, wave, surfaces: &mut *surfaces });
+    level.run(ShadeWave { shader, wave, surfaces: &mut *surfaces, memory, level });
     direct.send_shadow_rays(frame.lights, surfaces, level);
 }

@@ -1,0 +1,176 @@
+//! Materials with textures: what they are made of, and what becomes of a material where its textures show something.
+
+use raywood::Hit;
+use raywood_scene::{LightShares, Material, Rgb, SurfaceTextures, Texture, TextureImage};
+
+use crate::PreparedScene;
+use crate::prepared::{SurfaceMaterial, Which};
+
+/// What a texture is for: the place of what it shows among what all show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slot {
+    Color,
+    Emission,
+    OpacityMap,
+    Normal,
+    MetallicRoughness,
+    Occlusion,
+    Glossiness,
+    SpecularColor,
+    Specular,
+    Transmission,
+}
+
+/// What all textures of a material show at a point: ones where there is none.
+pub(crate) type Shown = [[f32; 4]; 10];
+
+/// A texture with its image.
+pub(crate) struct Layer<'a> {
+    pub(crate) slot: Slot,
+    pub(crate) texture: &'a Texture,
+    pub(crate) image: &'a TextureImage,
+    /// Whether it is read where the one before is.
+    pub(crate) follows: bool,
+}
+
+impl Layer<'_> {
+    /// Whether it is read over all that a ray stands for; numbers are read once.
+    #[inline(always)]
+    pub(crate) fn is_color(&self) -> bool {
+        matches!(self.slot, Slot::Color | Slot::Emission | Slot::OpacityMap)
+    }
+
+    /// Whether where one is read the other is too.
+    fn is_read_as(&self, other: &Self) -> bool {
+        let place = |layer: &Self| Texture { image: 0, ..*layer.texture };
+        let size = |layer: &Self| (layer.image.width(), layer.image.height());
+        self.is_color() == other.is_color()
+            && place(self) == place(other)
+            && size(self) == size(other)
+    }
+}
+
+/// A material with textures, and these with their images.
+pub(crate) struct TexturedMaterial<'a> {
+    material: &'a Material,
+    pub(crate) textures: &'a SurfaceTextures,
+    /// Those that have an image, those that are read in the same places one after the other.
+    pub(crate) layers: Vec<Layer<'a>>,
+    /// Whether it is not all there everywhere.
+    pub(crate) is_perforated: bool,
+}
+
+impl<'a> TexturedMaterial<'a> {
+    /// The textures of a material, if it has any; those without an image are left out.
+    pub(crate) fn new(material: &'a Material, images: &'a [TextureImage]) -> Option<Self> {
+        let textures = material.textures.as_deref()?;
+        let named = [
+            (Slot::Color, textures.color.as_ref()),
+            (Slot::Emission, textures.emission.as_ref()),
+            (Slot::OpacityMap, textures.opacity_map.as_ref()),
+            (Slot::Normal, textures.normal.as_ref().map(|(texture, _)| texture)),
+            (Slot::MetallicRoughness, textures.metallic_roughness.as_ref()),
+            (Slot::Occlusion, textures.occlusion.as_ref().map(|(texture, _)| texture)),
+            (Slot::Glossiness, textures.glossiness.as_ref()),
+            (Slot::SpecularColor, textures.specular_color.as_ref()),
+            (Slot::Specular, textures.specular.as_ref()),
+            (Slot::Transmission, textures.transmission.as_ref()),
+        ];
+        let with_image = |(slot, texture): (Slot, Option<&'a Texture>)| {
+            let image = images.get(texture?.image as usize)?;
+            Some(Layer { slot, texture: texture?, image, follows: false })
+        };
+        let mut layers: Vec<_> = named.into_iter().filter_map(with_image).collect();
+        for second in 1..layers.len() {
+            layers[second].follows = layers[second].is_read_as(&layers[second - 1]);
+        }
+        let is_perforated = is_perforated(textures, &layers);
+        Some(Self { material, textures, layers, is_perforated })
+    }
+
+    /// The texture that gives normals, and by how much it bends them.
+    pub(crate) fn normal(&self) -> Option<(&'a Texture, f32)> {
+        let (texture, scale) = self.textures.normal.as_ref()?;
+        let has_image = self.layers.iter().any(|layer| layer.slot == Slot::Normal);
+        has_image.then_some((texture, *scale))
+    }
+
+    /// Makes of the material what it is where its textures show that, and vertices have a colour.
+    #[inline(always)]
+    pub(crate) fn apply(&self, found: &mut SurfaceMaterial, shown: &Shown, vertex_color: Rgb) {
+        let of = |slot: Slot| shown[slot as usize];
+        found.opacity = opacity(self.textures, shown);
+        found.emission = found.emission * rgb(of(Slot::Emission));
+        if let Some((_, strength)) = &self.textures.occlusion {
+            found.ambient = 1.0 + strength * (of(Slot::Occlusion)[0] - 1.0);
+        }
+
+        let tint = rgb(of(Slot::Color)) * vertex_color;
+        let specular = of(Slot::Specular)[3] * rgb(of(Slot::SpecularColor));
+        let Some(mut surface) = self.material.metallic_roughness else {
+            found.diffuse = self.material.diffuse * tint;
+            found.specular = self.material.specular * specular;
+            found.mirror = self.material.mirror * specular;
+            found.make_safe();
+            return;
+        };
+        let [_, rough, metal, _] = of(Slot::MetallicRoughness);
+        let glossy = of(Slot::Glossiness);
+        surface.base = surface.base * tint;
+        surface.reflectance = surface.reflectance * specular * rgb(glossy);
+        surface.metallic *= metal;
+        surface.roughness = 1.0 - (1.0 - surface.roughness * rough) * glossy[3];
+        surface.transmission *= of(Slot::Transmission)[0];
+        let shares = surface.light_shares();
+        let LightShares { diffuse, specular, shininess, mirror, grazing, transmission } = shares;
+        (found.diffuse, found.specular, found.shininess) = (diffuse, specular, shininess);
+        (found.mirror, found.grazing, found.transmission) = (mirror, grazing, transmission);
+        found.make_safe();
+    }
+}
+
+/// Whether a surface with these textures is not all there everywhere.
+fn is_perforated(textures: &SurfaceTextures, layers: &[Layer<'_>]) -> bool {
+    let Some(opacity) = textures.opacity else { return false };
+    let has_holes = |layer: &Layer<'_>| match layer.slot {
+        Slot::Color => !layer.image.is_opaque(),
+        slot => slot == Slot::OpacityMap,
+    };
+    opacity < 1.0 || layers.iter().any(has_holes)
+}
+
+/// How much of a surface is there.
+#[inline(always)]
+fn opacity(textures: &SurfaceTextures, shown: &Shown) -> f32 {
+    let Some(factor) = textures.opacity else { return 1.0 };
+    let [r, g, b, _] = shown[Slot::OpacityMap as usize];
+    let alpha = shown[Slot::Color as usize][3];
+    (factor * alpha * ((r + g + b) / 3.0)).clamp(0.0, 1.0)
+}
+
+#[inline(always)]
+fn rgb([r, g, b, _]: [f32; 4]) -> Rgb {
+    Rgb::new(r, g, b)
+}
+
+/// How much of a surface is there at a hit, as close up: for shadow rays.
+pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
+    let material = scene.textured_material(scene.material_index(hit.primitive) as u32);
+    let (Some(material), Which::Triangle(triangle)) = (material, scene.which(hit.primitive)) else {
+        return 1.0;
+    };
+    let mesh = &scene.scene().mesh;
+    let corners = mesh.triangles.triangles()[triangle as usize];
+    let mut shown = [[1.0; 4]; _];
+    for Layer { slot, texture, image, .. } in &material.layers {
+        if matches!(slot, Slot::Color | Slot::OpacityMap) {
+            let coordinates = &mesh.texture_coordinates[usize::from(texture.set.min(1))];
+            let at = |i: usize| coordinates.get(corners[i] as usize).copied().unwrap_or([0.0; 2]);
+            let (a, b, c) = (at(0), at(1), at(2));
+            let along = |i: usize| a[i] + hit.u * (b[i] - a[i]) + hit.v * (c[i] - a[i]);
+            let point = texture.transform.point([along(0), along(1)]);
+            shown[*slot as usize] = image.show_close_up(texture, point);
+        }
+    }
+    opacity(material.textures, &shown)
+}
