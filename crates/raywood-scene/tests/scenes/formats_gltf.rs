@@ -347,3 +347,34 @@ fn vertices_that_are_nowhere() {
     let error = load_strictly("nan.glb", &file).unwrap_err();
     assert_eq!(*error.place(), Place::Json("accessors[0], element 0, in nodes[0]".to_owned()));
 }
+
+#[test]
+fn a_node_shows_its_mesh_where_its_instances_are() {
+    // The cube, and two translations and a scale for each of two instances.
+    let mut buffer = cube_buffer();
+    let numbers = [10.0f32, 0.0, 0.0, 0.0, 20.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0];
+    buffer.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+    let with = |second: usize| {
+        let json = cube_json(
+            r#""nodes":[{"mesh":0,"camera":0,"translation":[0,0,5],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":2,"SCALE":3}}}}],
+            "cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
+            "extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"],"#,
+        );
+        let json = json.replace("\"byteLength\":132}]", "\"byteLength\":180}]");
+        let views = r#"{"buffer":0,"byteOffset":96,"byteLength":36},{"buffer":0,"byteOffset":132,"byteLength":48}]"#;
+        let json = json.replace(r#"{"buffer":0,"byteOffset":96,"byteLength":36}]"#, views);
+        let last = r#"{"bufferView":1,"componentType":5121,"count":36,"type":"SCALAR"}"#;
+        let more = format!(
+            r#"{last},{{"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"}},{{"bufferView":2,"byteOffset":24,"componentType":5126,"count":{second},"type":"VEC3"}}"#
+        );
+        load("many.glb", glb(&json.replace(last, &more), &buffer))
+    };
+    let scene = with(2).unwrap();
+    check_scene(&scene);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert_eq!((triangle_count(&scene), scene.cameras.len()), (24, 1));
+    let bounds = scene.bounds();
+    assert_eq!((bounds.min, bounds.max), (Vec3::new(-2.0, -1.0, 3.0), Vec3::new(11.0, 22.0, 7.0)));
+    let error = with(1).unwrap_err().to_string();
+    assert!(error.contains("has attributes of different numbers of elements"), "{error}");
+}

@@ -18,7 +18,7 @@ pub(super) fn cameras(
 ) -> Result<Vec<Camera>, LoadError> {
     let mut measure = None;
     let mut cameras = Vec::new();
-    for Instance { index, node, to_world } in instances {
+    for Instance { index, node, to_world, .. } in instances.iter().filter(|i| !i.is_copy) {
         let Some(source) = node.camera.and_then(|c| document.root.cameras.get(c.value())) else {
             continue;
         };

@@ -12,6 +12,7 @@ use crate::formats::notes::Notes;
 /// Extensions that a file may require: those that change what is seen and are understood, and those of images in formats that are not, without
 /// which the shapes are still right.
 const KNOWN: &[&str] = &[
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",

@@ -29,7 +29,7 @@ pub(super) fn lights(
 ) -> Vec<Light> {
     let sources: &[Source] = document.root.as_ref();
     let mut lights = Vec::new();
-    for Instance { node, to_world, .. } in instances {
+    for Instance { node, to_world, .. } in instances.iter().filter(|i| !i.is_copy) {
         let extension = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         let Some(source) = extension.and_then(|e| sources.get(e.light.value())) else { continue };
 

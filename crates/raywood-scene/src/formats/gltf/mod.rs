@@ -1,6 +1,7 @@
 //! glTF 2.0 (Khronos 2017), as JSON with buffers beside it (`.gltf`) or all in one (`.glb`).
 //!
-//! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it. Read:
+//! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it, or for each of its instances
+//! (`EXT_mesh_gpu_instancing`). Read:
 //! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `TANGENT`, `TEXCOORD_0`, `TEXCOORD_1`, `COLOR_0`; sparse and normalised
 //! accessors; metallic and rough materials as far as Whitted's method can show them, with all their textures (PNG and JPEG); perspective
 //! cameras; punctual lights. Left out with a warning: images in other formats, points and lines, skins (shown as stored), morph targets

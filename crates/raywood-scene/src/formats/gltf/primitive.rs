@@ -108,11 +108,11 @@ pub(super) fn total_size(
 ) -> Result<Size, LoadError> {
     let mut total = Size::default();
     let mut known: Vec<Option<Size>> = vec![None; document.root.meshes.len()];
-    for mesh in instances.iter().filter_map(|instance| instance.node.mesh) {
-        let Some(known) = known.get_mut(mesh.value()) else { continue };
+    for mesh in instances.iter().filter_map(Instance::mesh) {
+        let Some(known) = known.get_mut(mesh) else { continue };
         let size = match *known {
             Some(size) => size,
-            None => *known.insert(size(document, mesh.value(), reads)?),
+            None => *known.insert(size(document, mesh, reads)?),
         };
         total = total + size;
     }
@@ -151,7 +151,7 @@ pub(super) fn add(
     raw: &mut RawMesh,
     notes: &mut Notes,
 ) -> Result<(), LoadError> {
-    let Some(mesh_index) = instance.node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+    let Some(mesh_index) = instance.mesh() else { return Ok(()) };
     let Some(mesh) = document.root.meshes.get(mesh_index) else { return Ok(()) };
     if instance.node.skin.is_some() {
         notes.say("skinned meshes are shown as stored, in their bind pose");

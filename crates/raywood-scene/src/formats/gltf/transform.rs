@@ -21,9 +21,15 @@ impl Transform {
             let column = |i: usize| [0, 1, 2].map(|row| f64::from(matrix[4 * i + row]));
             return Self { axes: [column(0), column(1), column(2)], origin: column(3) };
         }
-        let scale = node.scale.unwrap_or([1.0; 3]).map(f64::from);
-        let origin = node.translation.unwrap_or_default().map(f64::from);
-        let [x, y, z, w] = node.rotation.unwrap_or_default().0.map(f64::from);
+        let translation = node.translation.unwrap_or_default();
+        let rotation = node.rotation.unwrap_or_default().0;
+        Self::of_parts(translation, rotation, node.scale.unwrap_or([1.0; 3]))
+    }
+
+    /// First scaled, then turned by a quaternion of any length, then moved.
+    pub(super) fn of_parts(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> Self {
+        let (scale, origin) = (scale.map(f64::from), translation.map(f64::from));
+        let [x, y, z, w] = rotation.map(f64::from);
         let norm = x * x + y * y + z * z + w * w;
         let s = if norm > 0.0 { 2.0 / norm } else { 0.0 };
         let mut axes = [
