@@ -1,5 +1,5 @@
 //! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays and points that look for trouble,
-//! pseudo-random numbers, image comparison, well-formed pages. Not published.
+//! pseudo-random numbers, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
 
 pub mod closed;
 pub mod distance;
@@ -11,6 +11,7 @@ pub mod overlap;
 pub mod points;
 pub mod rays;
 mod rng;
+pub mod saved;
 pub mod shapes;
 
 pub use rng::Rng;

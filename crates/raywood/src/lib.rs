@@ -54,8 +54,10 @@ mod minmax;
 mod parallel;
 mod query;
 mod ray;
+mod saved;
 mod simd;
 mod stats;
+mod storage;
 mod structures;
 mod traverse;
 mod validate;
@@ -77,6 +79,7 @@ pub use instances::{
 pub use query::{AcceptAll, Face, HitFilter, HitLists, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};
 pub use ray::Ray;
+pub use saved::{SavedGeometry, SavedTree, SavedTreeError};
 pub use simd::{SimdLevel, SimdLevelError, Vectorized};
 pub use stats::{Level, NodeView, StructureStats};
 pub use structures::{AccelerationStructure, KdNode, Node, Structure, StructureKind};

@@ -111,6 +111,20 @@ impl TriangleBlock {
         Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
+    /// The lanes whose three corners lie in a box.
+    #[inline(always)]
+    pub(crate) fn corners_inside<S: Simd>(&self, simd: S, bounds: &Aabb) -> u32 {
+        let mut inside = 0xff;
+        for corner in &self.corners {
+            for (axis, coordinates) in corner.iter().enumerate() {
+                let coordinates = simd.load8(coordinates);
+                inside &= simd.splat8(bounds.min[axis]).less_or_equal(coordinates)
+                    & coordinates.less_or_equal(simd.splat8(bounds.max[axis]));
+            }
+        }
+        inside
+    }
+
     /// The distances of hits.
     #[inline(always)]
     pub(crate) fn distances<S: Simd>(simd: S, hits: &BlockHits) -> S::F8 {

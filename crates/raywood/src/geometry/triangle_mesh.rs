@@ -7,6 +7,7 @@ use super::separation::triangle_overlaps;
 use super::watertight::intersect_triangle;
 use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
 use crate::simd::prefetch_item;
+use crate::storage::Array;
 use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Triangles as triples of indices into an array of vertex positions. Checked once, when made: every index is in
@@ -17,8 +18,8 @@ use crate::{Aabb, Hit, Ray, Vec3};
 /// corners in a row only by rays that pass within rounding of that line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    positions: Array<Vec3>,
+    triangles: Array<[u32; 3]>,
 }
 
 /// Why arrays are not a triangle mesh.
@@ -82,11 +83,19 @@ impl TriangleMesh {
         positions: Vec<P>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
+        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
+        Self::of_arrays(positions.into(), triangles.into())
+    }
+
+    /// The same of arrays that may lie elsewhere.
+    pub(crate) fn of_arrays(
+        positions: Array<Vec3>,
+        triangles: Array<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
         if triangles.len() > 1 << 31 {
             return Err(MeshError::TooManyTriangles { triangles: triangles.len() });
         }
 
-        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
         let count = positions.iter().filter(|p| !p.is_finite()).count();
         if count > 0 {
             let first = positions.iter().position(|p| !p.is_finite()).unwrap_or_default();
@@ -99,6 +108,11 @@ impl TriangleMesh {
             return Err(MeshError::IndexOutOfRange { triangle, index, positions: positions.len() });
         }
         Ok(Self { positions, triangles })
+    }
+
+    /// Positions and triangles as the bytes that they are in memory.
+    pub(crate) fn saved_arrays(&self) -> [&[u8]; 2] {
+        [self.positions.as_bytes(), self.triangles.as_bytes()]
     }
 
     /// The vertex positions.

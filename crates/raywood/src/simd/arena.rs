@@ -2,9 +2,11 @@
 //! from a number alone, whatever kind of thing it is.
 
 use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::huge_pages;
+use crate::storage::{Array, Plain};
 
 /// Plain numbers that fill whole cache lines.
 ///
@@ -23,9 +25,12 @@ unsafe impl Lines for crate::geometry::TriangleBlock {}
 #[repr(C, align(64))]
 struct Line([u32; 16]);
 
+// SAFETY: sixteen numbers, as large as a cache line.
+unsafe impl Plain for Line {}
+
 /// Things of whole cache lines. What is found under a number is of the kind that is asked for, if only in bits.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Arena(Vec<Line>);
+pub(crate) struct Arena(Array<Line>);
 
 impl Arena {
     /// How many lines there are.
@@ -37,15 +42,65 @@ impl Arena {
     /// So many lines, which `fill` fills, and what that returns; `None` if it [abandons](Part::abandon) any of them. Lines that it leaves alone are zeros. Memory is touched for the first time where it is filled,
     /// by the thread that does so: a page fault costs more than filling a page.
     pub(crate) fn filled<R>(lines: usize, fill: impl FnOnce(Part<'_>) -> R) -> Option<(Self, R)> {
-        Self::with_room_for(lines).extended(lines, fill)
+        let (all, result) = ArenaInMaking::with_room_for(lines).extended(lines, fill)?;
+        Some((all.finish(), result))
     }
 
+    /// The lines in some bytes of memory that something else holds, where they are if they lie well. Of a number of bytes that is no multiple of 64 the rest is left out.
+    pub(crate) fn within(bytes: &Array<u8>, range: Range<usize>) -> Self {
+        Self(bytes.within(range))
+    }
+
+    /// All lines, as the bytes that they are in memory.
+    pub(crate) fn as_bytes(&self) -> &[u8] {
+        self.0.as_bytes()
+    }
+
+    /// The thing whose first line has this number.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many lines.
+    #[inline(always)]
+    pub(crate) fn get<T: Lines>(&self, line: usize) -> &T {
+        let lines = &self.0[line..line + size_of::<T>() / 64];
+        // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
+        unsafe { &*lines.as_ptr().cast() }
+    }
+
+    /// The same, to be damaged by tests.
+    #[cfg(test)]
+    pub(crate) fn get_mut<T: Lines>(&mut self, line: usize) -> &mut T {
+        let lines = &mut self.0.to_mut()[line..line + size_of::<T>() / 64];
+        // SAFETY: as above.
+        unsafe { &mut *lines.as_mut_ptr().cast() }
+    }
+
+    /// Adds lines of zeros that nothing refers to.
+    #[cfg(test)]
+    pub(crate) fn grow(&mut self, lines: usize) {
+        let mut all = self.0.to_vec();
+        all.resize(self.len() + lines, Line([0; 16]));
+        self.0 = all.into();
+    }
+
+    /// Where a line lies in memory, to be fetched; it need not exist.
+    #[inline(always)]
+    pub(crate) fn address(&self, line: usize) -> *const u8 {
+        self.0.as_ptr().wrapping_add(line).cast()
+    }
+}
+
+/// An arena to which lines are still added.
+pub(crate) struct ArenaInMaking(Vec<Line>);
+
+impl ArenaInMaking {
     /// No lines yet, with room for so many.
     pub(crate) fn with_room_for(lines: usize) -> Self {
         Self(huge_pages::vec_for(lines))
     }
 
-    /// So many lines more, which `fill` fills as those of [`filled`](Self::filled) are. If there is no room for them, everything moves to where there is.
+    /// So many lines more, filled as [`Arena::filled`] says. If there is no room for them, everything moves to where there is.
     pub(crate) fn extended<R>(
         self,
         lines: usize,
@@ -66,36 +121,9 @@ impl Arena {
         Some((Self(all), result))
     }
 
-    /// The thing whose first line has this number.
-    ///
-    /// # Panics
-    ///
-    /// If there are not as many lines.
-    #[inline(always)]
-    pub(crate) fn get<T: Lines>(&self, line: usize) -> &T {
-        let lines = &self.0[line..line + size_of::<T>() / 64];
-        // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
-        unsafe { &*lines.as_ptr().cast() }
-    }
-
-    /// The same, to be damaged by tests.
-    #[cfg(test)]
-    pub(crate) fn get_mut<T: Lines>(&mut self, line: usize) -> &mut T {
-        let lines = &mut self.0[line..line + size_of::<T>() / 64];
-        // SAFETY: as above.
-        unsafe { &mut *lines.as_mut_ptr().cast() }
-    }
-
-    /// Adds lines of zeros that nothing refers to.
-    #[cfg(test)]
-    pub(crate) fn grow(&mut self, lines: usize) {
-        self.0.resize(self.len() + lines, Line([0; 16]));
-    }
-
-    /// Where a line lies in memory, to be fetched; it need not exist.
-    #[inline(always)]
-    pub(crate) fn address(&self, line: usize) -> *const u8 {
-        self.0.as_ptr().wrapping_add(line).cast()
+    /// The arena as it is.
+    pub(crate) fn finish(self) -> Arena {
+        Arena(self.0.into())
     }
 }
 
@@ -208,12 +236,13 @@ mod tests {
     #[test]
     fn lines_are_added_with_room_for_them_or_without() {
         for room in [0, 5, 20] {
-            let (arena, ()) = Arena::with_room_for(room)
+            let (arena, ()) = ArenaInMaking::with_room_for(room)
                 .extended(5, |mut all| *all.put_default() = block_of(1))
                 .and_then(|(arena, ())| {
                     arena.extended(5, |mut more| more.put(block_of(more.first() as u32)))
                 })
                 .expect("nothing is abandoned");
+            let arena = arena.finish();
             assert_eq!(arena.len(), 10);
             assert_eq!(*arena.get::<TriangleBlock>(0), block_of(1));
             assert_eq!(*arena.get::<TriangleBlock>(5), block_of(5));

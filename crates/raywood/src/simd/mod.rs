@@ -23,7 +23,7 @@ mod vectorized;
 mod tests;
 
 use crate::Ray;
-pub(crate) use arena::{Arena, Part};
+pub(crate) use arena::{Arena, ArenaInMaking, Part};
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::registry::AnyStructure;
-use super::{AccelerationStructure, StructureKind};
+use super::{AccelerationStructure, StructureKind, WideBvh};
 use crate::build::{Work, watched};
 use crate::{BuildError, BuildOptions, Geometry, Hit, HitColumns, Probe, Ray, StructureStats};
 use crate::{NodeView, SimdLevel, SurfacePoint, ValidationError, Vec3, parallel};
@@ -59,6 +59,11 @@ impl<G: Geometry> Structure<G> {
         let build = |work: Work<'_>| AnyStructure::build(kind, &geometry, options, work);
         let structure = watched(watcher, build)?;
         Ok(Self { geometry, kind, structure })
+    }
+
+    /// A wide tree that is there already, over its geometry.
+    pub(crate) fn of_wide(geometry: G, tree: WideBvh) -> Self {
+        Self { geometry, kind: StructureKind::BvhWide, structure: AnyStructure::BvhWide(tree) }
     }
 
     /// What kind it is.

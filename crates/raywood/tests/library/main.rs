@@ -13,6 +13,8 @@ mod octree;
 mod overlap;
 mod packets;
 mod reinsertion;
+mod saved_forgeries;
+mod saved_trees;
 mod solid;
 mod spatial_splits;
 mod sphere_cast;

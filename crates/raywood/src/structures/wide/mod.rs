@@ -14,11 +14,13 @@ mod node;
 mod packet;
 pub(crate) mod pairs;
 pub(crate) mod parts;
+mod saved;
 pub(crate) mod search;
 mod sharing;
 mod single;
 mod sink;
 mod slabs;
+mod sound;
 mod source;
 mod step;
 pub(crate) mod sweep;
@@ -44,8 +46,10 @@ pub(crate) use crossings::HitVisitor;
 use node::Reference;
 pub(crate) use node::WideNode;
 use parts::{Parts, Told};
+pub(crate) use saved::SavedWide;
 use sink::Sink;
 use slabs::Slabs;
+pub(crate) use sound::Unsound;
 use source::Source;
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see

@@ -3,7 +3,7 @@
 //! Closest and any hits, closest points and moving spheres do not care how often they see a primitive. Who tells of primitives one by one must not tell of one twice.
 
 use crate::build::part_margin;
-use crate::{Bvh2, Vec3};
+use crate::{Aabb, Bvh2, Vec3};
 
 /// Which primitives lie in several leaves.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,8 +36,21 @@ impl Parts {
             several[word] |= once[word] & bit;
             once[word] |= bit;
         }
-        let (center, half) = part_margin::center_and_half(&bounds);
-        Self { bits: several, center, half }
+        Self::from_bits(several, &bounds)
+    }
+
+    /// Those of which the bits are set, of a tree with such a box.
+    pub(super) fn from_bits(bits: Vec<u64>, bounds: &Aabb) -> Self {
+        if bits.is_empty() {
+            return Self { bits, center: Vec3::ZERO, half: 0.0 };
+        }
+        let (center, half) = part_margin::center_and_half(bounds);
+        Self { bits, center, half }
+    }
+
+    /// A bit for each primitive; none if there are no parts.
+    pub(super) fn bits(&self) -> &[u64] {
+        &self.bits
     }
 
     /// By how much boxes count as larger for a ray that starts at `origin`: nothing where the [margin](part_margin) that the boxes of parts already have is enough.
@@ -120,7 +133,7 @@ mod tests {
     use crate::structures::AccelerationStructure;
     use crate::structures::wide::WideBvh;
     use crate::structures::wide::node::Reference;
-    use crate::{Aabb, BuildOptions, Geometry, Ray, TriangleMesh};
+    use crate::{BuildOptions, Geometry, Ray, TriangleMesh};
 
     /// Random numbers from -1 to 1.
     fn random(seed: u32) -> impl FnMut() -> f32 {

@@ -13,7 +13,7 @@ use super::collapse::{BLOCK_LINES, NODE_LINES};
 use super::node::Reference;
 use super::parts::Parts;
 use crate::build::{BuildMemory, Stretch, Work, sorted_keys};
-use crate::simd::Arena;
+use crate::simd::{Arena, ArenaInMaking};
 use crate::{BuildError, BuildOptions, Builder, Geometry};
 use leaves::LeafFill;
 use plan::{Node, Planned};
@@ -54,13 +54,13 @@ pub(super) fn build<G: Geometry>(
     // The blocks of all leaves, and behind them the nodes.
     let per_area = 1.0 / around.bounds.half_area();
     let leaves = LeafFill { geometry, keys: &keys, per_area, work: filling };
-    let arena = Arena::with_room_for(block_lines + node_lines);
+    let arena = ArenaInMaking::with_room_for(block_lines + node_lines);
     let (arena, _) = arena
         .extended(block_lines, |blocks| leaves.fill(&mut tree, blocks))
         .ok_or(BuildError::Cancelled)?;
     let root = Node::of(&tree);
     if let Node::Leaf(leaf) = root {
-        return Ok(finish((arena, (Reference(leaf.tag()), 0))));
+        return Ok(finish((arena.finish(), (Reference(leaf.tag()), 0))));
     }
     let plan = Planned::of(root);
     let lines = NODE_LINES * (1 + plan.nodes_below());
@@ -70,5 +70,6 @@ pub(super) fn build<G: Geometry>(
         let (_, depth) = nodes::fill(plan, place, all);
         (root, depth)
     });
-    Ok(finish(filled.ok_or(BuildError::Cancelled)?))
+    let (arena, top) = filled.ok_or(BuildError::Cancelled)?;
+    Ok(finish((arena.finish(), top)))
 }
