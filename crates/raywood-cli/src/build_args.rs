@@ -3,7 +3,8 @@
 use std::fmt;
 
 use rayon::ThreadPool;
-use raywood::{BuildError, BuildMemory, BuildOptions, BuildPreset, Bvh, Geometry, StructureKind};
+use raywood::StructureKind;
+use raywood::{BuildError, BuildMemory, BuildOptions, BuildPreset, Bvh, Geometry, SavedTree};
 use raywood_render::{PreparedScene, Surfaces};
 use raywood_scene::Scene;
 
@@ -16,9 +17,9 @@ use crate::progress_bar::during_build;
 pub(crate) struct BuildArgs {
     /// fastest, fast, balanced, high or best build
     ///
-    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. What comes out does not change.
-    #[arg(long = "build", value_name = "PRESET", value_parser = build_preset, default_value = "balanced", hide_default_value = true)]
-    preset: BuildPreset,
+    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. What comes out does not change. The default is balanced, but of a saved scene its own tree.
+    #[arg(long = "build", value_name = "PRESET", value_parser = build_preset)]
+    preset: Option<BuildPreset>,
 
     /// Most memory for a build, as 500M or 2G
     ///
@@ -30,16 +31,35 @@ pub(crate) struct BuildArgs {
 impl BuildArgs {
     /// What they say.
     pub(crate) fn options(&self) -> BuildOptions {
-        BuildOptions { memory_limit: self.memory_limit, ..self.preset.options() }
+        BuildOptions { memory_limit: self.memory_limit, ..self.preset().options() }
     }
 
-    /// A scene with its structure, built on the threads of a pool while a bar shows how far it is.
+    fn preset(&self) -> BuildPreset {
+        self.preset.unwrap_or_default()
+    }
+
+    /// The tree that was saved, if it is what they ask for.
+    pub(crate) fn wanted<'t>(
+        &self,
+        saved: Option<&'t SavedTree>,
+        kind: StructureKind,
+    ) -> Option<&'t SavedTree> {
+        saved.filter(|_| self.preset.is_none() && kind == StructureKind::BvhWide)
+    }
+
+    /// A scene with its structure: the one saved with it if that is wanted, else built on the threads of a pool while a bar shows how far it is.
     pub(crate) fn prepare<'a>(
         &self,
         scene: &'a Scene,
+        saved: Option<&SavedTree>,
         kind: StructureKind,
         pool: &ThreadPool,
     ) -> Result<PreparedScene<'a>, Failure> {
+        if let Some(saved) = self.wanted(saved, kind) {
+            let structure = saved.structure(PreparedScene::surfaces(scene));
+            let structure = structure.map_err(Failure::bad_input)?;
+            return Ok(PreparedScene::from_structure(scene, structure));
+        }
         let options = self.options();
         let prepared = during_build(|watcher| {
             pool.install(|| PreparedScene::build_watched(scene, kind, &options, watcher))
@@ -47,12 +67,16 @@ impl BuildArgs {
         prepared.map_err(|error| self.failure(&error, kind, scene))
     }
 
-    /// A tree for all kinds of queries, built in the same way.
+    /// A tree for all kinds of queries, come by in the same way.
     pub(crate) fn tree<'a>(
         &self,
         scene: &'a Scene,
+        saved: Option<&SavedTree>,
         pool: &ThreadPool,
     ) -> Result<Bvh<Surfaces<'a>>, Failure> {
+        if let Some(saved) = self.wanted(saved, StructureKind::BvhWide) {
+            return saved.bvh(PreparedScene::surfaces(scene)).map_err(Failure::bad_input);
+        }
         let (surfaces, options) = (PreparedScene::surfaces(scene), self.options());
         let tree = during_build(|watcher| {
             pool.install(|| Bvh::build_watched(surfaces, &options, watcher))
@@ -73,7 +97,7 @@ impl BuildArgs {
         };
         let smaller = BuildPreset::ALL.iter().copied().find(|preset| {
             let memory = BuildMemory::of(kind, primitives, &preset.options());
-            *preset < self.preset && memory.peak <= limit
+            *preset < self.preset() && memory.peak <= limit
         });
         let advice = match smaller {
             Some(preset) => format!("a higher limit or --build {}", preset.name()),

@@ -5,6 +5,7 @@ mod commands;
 mod exporters;
 mod failure;
 mod interrupt;
+mod mapped_file;
 mod output_file;
 mod parse;
 mod picture;

@@ -1,11 +1,15 @@
-//! Where scenes come from: a file, or `builtin:` and the name of a scene made by code.
+//! Where scenes come from: a file, which may hold the tree over the scene as well, or `builtin:` and the name of a scene made by code.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use raywood_scene::{LoadOptions, Scene, builtin, builtins, load_file};
+use raywood::SavedTree;
+use raywood_scene::{LoadOptions, SavedScene, Scene, builtin, builtins, load_file};
 
 use crate::failure::Failure;
+use crate::mapped_file;
 use crate::print;
 
 /// What precedes the name of a built-in scene.
@@ -14,6 +18,8 @@ pub(crate) const BUILTIN_PREFIX: &str = "builtin:";
 /// A scene and how long it took to get it.
 pub(crate) struct Loaded {
     pub(crate) scene: Scene,
+    /// The tree over its surfaces, if it was saved with it.
+    pub(crate) tree: Option<SavedTree>,
     pub(crate) time: Duration,
 }
 
@@ -29,6 +35,10 @@ impl Loaded {
 /// Loads or makes the scene.
 pub(crate) fn load(name: &str, strict: bool) -> Result<Loaded, Failure> {
     let started = Instant::now();
+    if is_saved(Path::new(name)) {
+        let SavedScene { scene, tree } = open_saved(Path::new(name))?;
+        return Ok(Loaded { scene, tree: Some(tree), time: started.elapsed() });
+    }
     let scene = match name.strip_prefix(BUILTIN_PREFIX) {
         Some(builtin_name) => builtin(builtin_name).map_err(Failure::bad_input)?,
         None => {
@@ -39,7 +49,23 @@ pub(crate) fn load(name: &str, strict: bool) -> Result<Loaded, Failure> {
             })?
         }
     };
-    Ok(Loaded { scene, time: started.elapsed() })
+    Ok(Loaded { scene, tree: None, time: started.elapsed() })
+}
+
+/// Whether a file is a saved scene, by its first bytes, whatever it is called.
+fn is_saved(path: &Path) -> bool {
+    let mut first = [0; SavedTree::SIGNATURE.len()];
+    path.is_file()
+        && File::open(path).and_then(|mut file| file.read_exact(&mut first)).is_ok()
+        && first == SavedTree::SIGNATURE
+}
+
+/// Opens a saved scene where the system keeps it.
+fn open_saved(path: &Path) -> Result<SavedScene, Failure> {
+    let mapped = mapped_file::map(path).map_err(|error| {
+        Failure::BadInput(format!("{}: could not be mapped: {error}", path.display()))
+    })?;
+    SavedScene::open(path, mapped).map_err(Failure::bad_input)
 }
 
 /// What follows the error about a file that does not exist: the built-in scene that was meant, or all of them.

@@ -23,7 +23,7 @@ use crate::view_args::ViewArgs;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:hall
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes. Else it is builtin:terrain.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes. Else it is builtin:terrain.
     #[arg(default_value = "builtin:terrain", hide_default_value = true)]
     scene: String,
 
@@ -95,11 +95,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let Loaded { mut scene, .. } = loaded;
+    let Loaded { mut scene, tree, .. } = loaded;
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let mut prepared = args.build.prepare(&scene, kind, &pool)?;
+    let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
     let build = (started.elapsed().as_secs_f64(), pool.current_num_threads());
 
     let choose = || args.view.view(&prepared, width as f32 / height as f32);

@@ -97,10 +97,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let Loaded { mut scene, .. } = loaded;
+    let Loaded { mut scene, tree, .. } = loaded;
     args.view.orient(&mut scene);
 
-    let prepared = args.build.prepare(&scene, StructureKind::default(), &pool)?;
+    let prepared = args.build.prepare(&scene, tree.as_ref(), StructureKind::default(), &pool)?;
     let choose = || args.view.view(&prepared, options.aspect);
     let view = during_step("choosing a view", || pool.install(choose))?;
     let comparison =

@@ -19,7 +19,7 @@ use crate::simd_args::SimdArgs;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
 
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let kind = args.structure.unwrap_or_default();
-    let prepared = args.build.prepare(&loaded.scene, kind, &pool)?;
+    let prepared = args.build.prepare(&loaded.scene, loaded.tree.as_ref(), kind, &pool)?;
     let stats = prepared.structure().stats();
     let level = prepared.structure().simd_level();
     if args.json {
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn as_text(
-    Loaded { scene, time }: &Loaded,
+    Loaded { scene, time, .. }: &Loaded,
     kind: StructureKind,
     stats: &StructureStats,
     level: Option<SimdLevel>,
@@ -175,7 +175,7 @@ fn describe(material: &Material) -> String {
 }
 
 fn as_json(
-    Loaded { scene, time }: &Loaded,
+    Loaded { scene, time, .. }: &Loaded,
     kind: StructureKind,
     stats: &StructureStats,
     level: Option<SimdLevel>,

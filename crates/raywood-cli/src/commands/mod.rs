@@ -1,6 +1,7 @@
 //! The subcommands, one per file. To add one, write its file and name it here.
 
 mod bench;
+mod build;
 mod compare;
 mod info;
 mod lecture;
@@ -18,6 +19,7 @@ pub(crate) enum Command {
     // Its short help fills a screen already.
     #[command(mut_arg("simd", |arg| arg.hide_short_help(true)))]
     Render(render::Args),
+    Build(build::Args),
     Compare(compare::Args),
     Bench(bench::Args),
     Query(query::Args),
@@ -31,6 +33,7 @@ impl Command {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(args),
+            Self::Build(args) => build::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Bench(args) => bench::run(args),
             Self::Query(args) => query::run(args),

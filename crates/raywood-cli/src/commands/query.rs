@@ -83,7 +83,7 @@ at all."#;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:hall
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(value_name = "MESH")]
     scene: String,
 
@@ -201,7 +201,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let scene = &loaded.scene;
-    let tree = args.build.tree(scene, &pool)?;
+    let tree = args.build.tree(scene, loaded.tree.as_ref(), &pool)?;
 
     let max_distance = args.max_distance.unwrap_or(f32::INFINITY);
     let max_hits = args.max_hits.map(|most| most as usize);

@@ -26,7 +26,7 @@ use crate::view_args::ViewArgs;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
 
@@ -113,6 +113,8 @@ struct Report<'a> {
     args: &'a Args,
     scene: &'a Scene,
     kind: StructureKind,
+    /// Whether the structure was saved with the scene.
+    is_saved: bool,
     structure: StructureStats,
     load: Duration,
     build: Duration,
@@ -141,11 +143,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let Loaded { mut scene, time: load } = loaded;
+    let Loaded { mut scene, tree, time: load } = loaded;
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepared = args.build.prepare(&scene, kind, &pool)?;
+    let prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
     let build = started.elapsed();
 
     let started = Instant::now();
@@ -172,6 +174,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         args,
         scene: &scene,
         kind,
+        is_saved: args.build.wanted(tree.as_ref(), kind).is_some(),
         structure,
         load,
         build,
@@ -197,8 +200,8 @@ fn output_file(args: &Args) -> Result<OutputFile, Failure> {
 
 impl Report<'_> {
     fn as_text(&self) -> String {
-        let Self { args, scene, kind, structure, load, build, view, render, heat, bounds, write } =
-            self;
+        let Self { args, scene, kind, is_saved, structure, .. } = self;
+        let Self { load, build, view, render, heat, bounds, write, .. } = self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
         let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
@@ -213,7 +216,8 @@ impl Report<'_> {
         let megabytes = structure.bytes as f64 / 1e6;
         let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
         let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
-        line("build", format!("{}   {}, {size}", seconds(build), kind.name()));
+        let saved = if *is_saved { " as saved" } else { "" };
+        line("build", format!("{}   {}{saved}, {size}", seconds(build), kind.name()));
         line("view", seconds(view));
         let [primary, shadow, reflection, refraction] =
             [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
@@ -256,8 +260,8 @@ impl Report<'_> {
     }
 
     fn as_json(&self) -> Value {
-        let Self { args, scene, kind, structure, load, build, view, render, heat, bounds, write } =
-            self;
+        let Self { args, scene, kind, is_saved, structure, .. } = self;
+        let Self { load, build, view, render, heat, bounds, write, .. } = self;
         let rays = render.rays;
         json!({
             "scene": args.scene,
@@ -270,6 +274,7 @@ impl Report<'_> {
             "triangles": scene.mesh.triangles.triangles().len(),
             "spheres": scene.spheres.as_slice().len(),
             "warnings": scene.warnings,
+            "saved_tree": is_saved,
             "seconds": {
                 "load": load.as_secs_f64(),
                 "build": build.as_secs_f64(),

@@ -14,6 +14,7 @@ mod obj;
 mod ply;
 mod polygon;
 mod raw_mesh;
+mod rwood;
 mod stl;
 mod text;
 
@@ -33,7 +34,8 @@ pub struct Format {
 }
 
 /// All formats. To add one: write its module, and add its line here.
-pub const FORMATS: &[Format] = &[obj::FORMAT, gltf::FORMAT, ply::FORMAT, stl::FORMAT];
+pub const FORMATS: &[Format] =
+    &[obj::FORMAT, gltf::FORMAT, ply::FORMAT, stl::FORMAT, rwood::FORMAT];
 
 /// A file to load: its name (for messages, and to find the files it names), its bytes, and how to load it.
 pub(crate) struct Input<'a> {

@@ -78,7 +78,7 @@ fn what_is_no_file() {
     let error = error_at("picture.jpeg");
     assert!(
         error.ends_with(
-            "has the unknown extension .jpeg; the known ones are .obj, .glb, .gltf, .ply, .stl"
+            "has the unknown extension .jpeg; the known ones are .obj, .glb, .gltf, .ply, .stl, .rwood"
         ),
         "{error}"
     );

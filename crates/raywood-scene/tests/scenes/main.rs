@@ -7,3 +7,4 @@ mod formats_real;
 mod formats_support;
 mod formats_text;
 mod texture_files;
+mod saved;

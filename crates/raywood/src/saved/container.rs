@@ -8,7 +8,7 @@ use super::checksum::checksum;
 use crate::storage::Array;
 
 /// The first bytes of every version. One is no ASCII, and line ends are among them: whatever takes the file for text damages them.
-const MAGIC: [u8; 8] = *b"\x89RWOOD\r\n";
+pub(super) const SIGNATURE: [u8; 8] = *b"\x89RWOOD\r\n";
 
 /// The version of the format.
 pub(super) const VERSION: u32 = 1;
@@ -79,7 +79,7 @@ pub(super) fn write(sections: &[NewSection<'_>], mut writer: impl Write) -> io::
     }
 
     let mut header = Vec::with_capacity(HEADER);
-    header.extend(MAGIC);
+    header.extend(SIGNATURE);
     header.extend(VERSION.to_le_bytes());
     header.extend((sections.len() as u32).to_le_bytes());
     header.extend((end as u64).to_le_bytes());
@@ -107,7 +107,7 @@ impl Container {
         let found = bytes.len() as u64;
 
         // What is the same in all versions comes first, so that others are told from damage.
-        if bytes.len() < MAGIC.len() || bytes[..MAGIC.len()] != MAGIC {
+        if bytes.len() < SIGNATURE.len() || bytes[..SIGNATURE.len()] != SIGNATURE {
             return Err(SavedTreeError::NotASavedTree);
         }
         if bytes.len() < HEADER {

@@ -43,6 +43,9 @@ pub struct SavedTree {
 }
 
 impl SavedTree {
+    /// With which bytes every saved tree begins, of any version.
+    pub const SIGNATURE: [u8; 8] = container::SIGNATURE;
+
     /// Opens a saved tree. The arrays of which tree and mesh are made are not copied if they are aligned in memory, as those of a mapped file are (nodes to 64 bytes, all others to
     /// 4); the owner of the bytes lives as long as anything that was made of them.
     ///

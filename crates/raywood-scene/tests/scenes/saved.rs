@@ -1,0 +1,170 @@
+//! Scenes saved with their trees.
+
+use std::path::Path;
+
+use raywood::{Bvh, Joined, Vec3};
+use raywood_scene::{
+    Camera, Light, LightKind, LoadOptions, Material, Pattern, SavedScene, Scene, builtin, builtins,
+    load_bytes, load_file, save_scene,
+};
+use raywood_testkit::saved::Forgery;
+use raywood_testkit::{Rng, test_scenes};
+
+/// The bytes of a scene with its tree.
+fn saved(scene: &Scene) -> Vec<u8> {
+    let surfaces = Joined { first: &scene.mesh.triangles, second: &scene.spheres };
+    let mut file = Vec::new();
+    let tree = Bvh::build(surfaces).expect("it builds");
+    save_scene(scene, &tree, &mut file).expect("it is saved");
+    file
+}
+
+fn open(file: Vec<u8>) -> Result<SavedScene, String> {
+    SavedScene::open(Path::new("some/x.rwood"), file).map_err(|error| error.to_string())
+}
+
+/// Asserts that a scene comes back, all of it but name and warnings.
+fn comes_back(scene: &Scene) {
+    let file = saved(scene);
+    let loaded = open(file.clone()).expect("it is sound");
+    let expected = Scene { name: "x.rwood".to_owned(), warnings: Vec::new(), ..scene.clone() };
+    assert!(format!("{:?}", loaded.scene) == format!("{expected:?}"), "{}", scene.name);
+    assert!(saved(&loaded.scene) == file, "{}: not the same when saved again", scene.name);
+    let as_a_format = load_bytes(Path::new("x"), &file, &LoadOptions::default());
+    let as_a_format = as_a_format.expect("it is recognised");
+    assert_eq!((as_a_format.mesh, &*as_a_format.name), (loaded.scene.mesh, "x"));
+}
+
+#[test]
+fn every_builtin_comes_back() {
+    for scene in builtins() {
+        comes_back(&builtin(scene.name).expect("it is made"));
+    }
+}
+
+#[test]
+fn everything_that_a_scene_can_have_comes_back() {
+    let mut rng = Rng::new(5);
+    let mut color = || rng.in_cube();
+    let patterns = [
+        Pattern::Plain,
+        Pattern::Checker { other: color(), size: 0.5 },
+        Pattern::Marble { vein: color(), size: f32::NAN },
+        Pattern::Tiles { other: color(), size: 2.0, edge: [0.6, -0.8], joint: -0.0 },
+        Pattern::Masonry { length: 1.0, height: f32::INFINITY, joint: 1e-40 },
+    ];
+    let materials = patterns.map(|pattern| Material {
+        name: format!("{pattern:?}: \u{e4}\u{1f332}\0"),
+        diffuse: color(),
+        pattern,
+        specular: color(),
+        shininess: color().x,
+        mirror: color(),
+        transmission: color(),
+        ior: color().y,
+        absorption: color(),
+        emission: color(),
+    });
+    let direction = color();
+    let kinds = [
+        LightKind::Point { position: color() },
+        LightKind::Spot { position: color(), direction, cos_inner: 0.9, cos_outer: 0.5 },
+        LightKind::Directional { direction },
+        LightKind::Ambient,
+    ];
+    let lights = kinds.map(|kind| Light { name: format!("{kind:?}"), kind, intensity: color() });
+    let camera =
+        Camera { name: String::new(), eye: color(), target: color(), up: Vec3::Z, fov_y: 40.0 };
+    let mut scene = builtin("whitted").expect("it is made");
+    let vertices = scene.mesh.triangles.positions().len();
+    scene.mesh.normals = (0..vertices).map(|_| color()).collect();
+    scene.mesh.colors = (0..vertices).map(|_| color()).collect();
+    scene.materials = materials.to_vec();
+    scene.lights = lights.to_vec();
+    scene.cameras = vec![camera.clone(), Camera { name: "other".to_owned(), ..camera }];
+    scene.background.nadir = color();
+    for up in [None, Some(Vec3::Z)] {
+        scene.up = up;
+        comes_back(&scene);
+    }
+}
+
+#[test]
+fn a_tree_without_a_scene_gets_the_default_material() {
+    let mesh = builtin("terrain?n=8").expect("it is made").mesh.triangles;
+    let mut file = Vec::new();
+    Bvh::build(&mesh).expect("it builds").save(&mut file).expect("it is saved");
+    let SavedScene { scene, .. } = open(file).expect("it is sound");
+    assert_eq!((&scene.mesh.triangles, &scene.materials[..]), (&mesh, &[Material::default()][..]));
+}
+
+#[test]
+fn what_is_wrong_with_a_scene_is_said() {
+    let mut scene = builtin("whitted").expect("it is made");
+    let vertices = scene.mesh.triangles.positions().len();
+    scene.mesh.normals = vec![Vec3::X; vertices];
+    let honest = Forgery::of(&saved(&scene));
+    let error = |change: &dyn Fn(&mut Forgery)| {
+        let mut forgery = honest.clone();
+        change(&mut forgery);
+        open(forgery.file()).expect_err("it is refused")
+    };
+    assert_eq!(
+        error(&|forgery| forgery.set("scene", 0, 2)),
+        "some/x.rwood: section `scene`, byte 0 of it: a scene of version 2, expected version 1; save it again from its model"
+    );
+    assert!(
+        error(&|forgery| forgery.set("scene", 4, 7)).contains("7 before this, expected 0 or 1")
+    );
+    assert!(error(&|forgery| forgery.section("scene").push(0)).contains("more bytes than"));
+    assert!(error(&|forgery| forgery.section("normals").truncate(12)).ends_with(&format!(
+        "section `normals`, byte 0 of it: 1 values, but there are {vertices} vertices"
+    )));
+    assert!(error(&|forgery| forgery.section("normals").truncate(11)).contains("but it ends"));
+    let damaged = error(&|forgery| forgery.version = 9);
+    assert!(damaged.starts_with("some/x.rwood: is a saved tree of version 9"), "{damaged}");
+}
+
+#[test]
+fn no_scene_that_is_cut_or_changed_does_harm() {
+    let honest = Forgery::of(&saved(&builtin("whitted").expect("it is made")));
+    let length = honest.clone().section("scene").len();
+    for at in 0..length {
+        let mut cut = honest.clone();
+        cut.section("scene").truncate(at);
+        assert!(open(cut.file()).is_err(), "{at} of {length} bytes");
+    }
+    let mut refused = 0;
+    for at in (0..length / 4).map(|word| 4 * word) {
+        for number in [0, 5, 0x7fff_ffff, u32::MAX] {
+            let mut forgery = honest.clone();
+            forgery.set("scene", at, number);
+            refused += usize::from(open(forgery.file()).is_err());
+        }
+    }
+    assert!(refused > 20, "{refused}");
+}
+
+#[test]
+fn real_models_come_back() {
+    let Some(folder) = test_scenes() else { return };
+    for name in ["sponza-dabrovic", "country-kitchen", "bunny"] {
+        let Some(path) = find(&folder, name) else { continue };
+        comes_back(&load_file(&path, &LoadOptions::default()).expect("a model"));
+    }
+}
+
+/// A model whose name begins so.
+fn find(folder: &Path, name: &str) -> Option<std::path::PathBuf> {
+    let mut entries: Vec<_> = folder.read_dir().ok()?.flatten().map(|entry| entry.path()).collect();
+    entries.sort();
+    entries.into_iter().find_map(|path| {
+        if path.is_dir() {
+            return find(&path, name);
+        }
+        let is_model =
+            path.extension().is_some_and(|e| ["obj", "glb", "ply", "stl"].iter().any(|m| e == *m));
+        let is_it = path.file_stem().is_some_and(|stem| stem.to_string_lossy().starts_with(name));
+        (is_model && is_it).then_some(path)
+    })
+}
