@@ -1,6 +1,7 @@
 //! The ball as a region.
 
-use super::{Region, Touch, private::Prepare};
+use super::Region;
+use super::private::{Prepare, Touch};
 use crate::geometry::{Frame, TriangleBlock, closest_on_triangle};
 use crate::simd::{Float, Simd};
 use crate::structures::wide::search::{Planes, lanes};

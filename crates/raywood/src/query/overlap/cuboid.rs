@@ -1,6 +1,7 @@
 //! The axis-aligned box as a region.
 
-use super::{Region, Touch, private::Prepare};
+use super::Region;
+use super::private::{Prepare, Touch};
 use crate::geometry::{TriangleBlock, triangle_overlaps};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, boxes_touching, lanes};

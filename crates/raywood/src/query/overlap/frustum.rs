@@ -1,6 +1,7 @@
 //! The frustum as a region: what a camera sees, or any convex space between six planes.
 
-use super::{Region, Touch, private::Prepare};
+use super::Region;
+use super::private::{Prepare, Touch};
 use crate::double::{Double3, add, cross, dot, double, scale, sub};
 use crate::geometry::TriangleBlock;
 use crate::simd::Simd;

@@ -13,6 +13,7 @@ use std::ops::ControlFlow;
 
 pub use ball::Ball;
 pub use frustum::Frustum;
+use private::Touch;
 
 use crate::geometry::TriangleBlock;
 use crate::simd::{Kernel, Simd, dispatch_on};
@@ -28,7 +29,7 @@ use crate::{Bvh, Geometry, WideBvh, parallel};
 pub trait Region: Sync + private::Prepare {}
 
 pub(crate) mod private {
-    use super::Touch;
+    use super::{Geometry, Planes, Simd, TriangleBlock};
 
     /// What makes a region ready for a search.
     pub trait Prepare {
@@ -36,18 +37,18 @@ pub(crate) mod private {
         #[doc(hidden)]
         fn prepare(&self, reach: f32) -> Option<impl Touch>;
     }
-}
 
-/// What a search asks of a region.
-pub(crate) trait Touch {
-    /// The boxes that may touch it, as a set of lanes. Must be `#[inline(always)]`.
-    fn boxes<S: Simd>(&self, simd: S, planes: &Planes) -> u32;
+    /// What a search asks of a region.
+    pub trait Touch {
+        /// The boxes that may touch it, as a set of lanes. Must be `#[inline(always)]`.
+        fn boxes<S: Simd>(&self, simd: S, planes: &Planes) -> u32;
 
-    /// Those of the given triangles of a block that touch it. Must be `#[inline(always)]`.
-    fn triangles<S: Simd>(&self, simd: S, block: &TriangleBlock, chosen: u32) -> u32;
+        /// Those of the given triangles of a block that touch it. Must be `#[inline(always)]`.
+        fn triangles<S: Simd>(&self, simd: S, block: &TriangleBlock, chosen: u32) -> u32;
 
-    /// Whether a primitive that is no triangle touches it.
-    fn primitive<G: Geometry>(&self, geometry: &G, primitive: u32) -> bool;
+        /// Whether a primitive that is no triangle touches it.
+        fn primitive<G: Geometry>(&self, geometry: &G, primitive: u32) -> bool;
+    }
 }
 
 impl<G: Geometry> Bvh<G> {

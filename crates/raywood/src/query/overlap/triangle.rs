@@ -1,6 +1,7 @@
 //! The triangle as a region.
 
-use super::{Region, Touch, private::Prepare};
+use super::Region;
+use super::private::{Prepare, Touch};
 use crate::geometry::{TriangleBlock, triangle_overlaps, triangles_touch};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, boxes_touching, lanes};
