@@ -42,7 +42,7 @@ fn a_saved_scene_gives_the_same_picture() {
 #[test]
 fn other_trees_are_built_where_they_are_asked_for() {
     let folder = folder("saved-others");
-    json(&run(&folder, "build builtin:whitted -o x.rwood --build best --json"));
+    json(&run(&folder, "build builtin:terrain?n=32 -o x.rwood --build best --json"));
     let (expected, best) = picture(&folder, "x.rwood", "");
     assert_eq!(best["saved_tree"], true);
     for options in ["--build fast", "--structure kd-tree"] {

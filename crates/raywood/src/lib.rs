@@ -26,6 +26,7 @@
 //! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be.
+//! - A tree can be [saved](Bvh::save) with its mesh and [loaded](Bvh::load) where it lies in memory, or [with more](SavedTree): a mapped file of a million triangles answers its first ray within milliseconds.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
@@ -36,7 +37,7 @@
 //! - At exactly equal `t` the lowest primitive number wins.
 //! - Watertight: no ray slips between two triangles that share an edge or vertex.
 //! - No input panics, hangs or gives a hit that is not there: meshes with NaN or infinite vertices are refused, rays with NaN miss,
-//!   empty meshes are legal.
+//!   empty meshes are legal. Saved trees are checked when they are loaded: whatever their bytes are, the same holds.
 //! - A build can be [watched](Bvh::build_watched) and stopped, and its [memory](BuildMemory) is known before it begins.
 //! - Trees and answers do not depend on the number of threads. Work runs in the caller's rayon pool (feature `rayon`, on by
 //!   default) or on the calling thread.

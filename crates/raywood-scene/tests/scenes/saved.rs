@@ -7,7 +7,7 @@ use raywood_scene::{
     Camera, Light, LightKind, LoadOptions, Material, Pattern, SavedScene, Scene, builtin, builtins,
     load_bytes, load_file, save_scene,
 };
-use raywood_testkit::saved::Forgery;
+use raywood_testkit::saved::{Forgery, correct_checksums};
 use raywood_testkit::{Rng, test_scenes};
 
 /// The bytes of a scene with its tree.
@@ -143,6 +143,23 @@ fn no_scene_that_is_cut_or_changed_does_harm() {
         }
     }
     assert!(refused > 20, "{refused}");
+}
+
+#[test]
+fn what_fuzzing_found_does_no_harm() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/found/saved_scene");
+    // A package on its own has no such folder.
+    let Ok(entries) = folder.read_dir() else { return };
+    let mut loaded = 0;
+    for entry in entries {
+        let mut file = std::fs::read(entry.expect("an entry").path()).expect("a file");
+        correct_checksums(&mut file);
+        if let Ok(SavedScene { scene, .. }) = open(file) {
+            comes_back(&scene);
+            loaded += 1;
+        }
+    }
+    assert!(loaded > 2, "{loaded}");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Saved trees that no honest writer writes, all checksums right: none makes loading or any query panic, hang or answer with primitives that are not there.
 
+use std::fs;
 use std::panic::catch_unwind;
+use std::path::Path;
 
 use raywood::{BuildOptions, BuildPreset, Bvh, Joined, SavedTree, Spheres};
 use raywood_testkit::saved::{Forgery, ask_everything, correct_checksums};
@@ -306,7 +308,25 @@ fn random_forgeries_do_no_harm() {
 }
 
 #[test]
-fn a_point_of_a_forged_tree_is_an_error_with_its_place() {
+fn what_fuzzing_found_does_no_harm() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/found/saved_tree");
+    // A package on its own has no such folder.
+    let Ok(entries) = fs::read_dir(&folder) else { return };
+    let (mut loaded, mut refused) = (0, 0);
+    for entry in entries {
+        let path = entry.expect("an entry").path();
+        let mut file = fs::read(&path).expect("a file");
+        correct_checksums(&mut file);
+        match survives(file, 1) {
+            true => loaded += 1,
+            false => refused += 1,
+        }
+    }
+    assert!(loaded > 5 && refused > 5, "{loaded} loaded, {refused} refused");
+}
+
+#[test]
+fn an_error_tells_the_place() {
     let mut forgery = honest();
     let start = 320 + 64;
     assert_eq!(start % 64, 0);
