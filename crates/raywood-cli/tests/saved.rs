@@ -43,12 +43,14 @@ fn a_saved_scene_gives_the_same_picture() {
 fn other_trees_are_built_where_they_are_asked_for() {
     let folder = folder("saved-others");
     json(&run(&folder, "build builtin:terrain?n=32 -o x.rwood --build best --json"));
-    let (expected, best) = picture(&folder, "x.rwood", "");
+    let (_, best) = picture(&folder, "x.rwood", "");
     assert_eq!(best["saved_tree"], true);
     for options in ["--build fast", "--structure kd-tree"] {
         let (found, report) = picture(&folder, "x.rwood", options);
         assert_eq!(report["saved_tree"], false, "{options}");
         assert_ne!(report["structure"], best["structure"], "{options}");
+        let (expected, built) = picture(&folder, "builtin:terrain?n=32", options);
+        assert_eq!(report["structure"], built["structure"], "{options}");
         assert!(found == expected, "{options}");
     }
     let (_, report) = picture(&folder, "x.rwood", "--structure bvh-wide");
