@@ -126,6 +126,33 @@ fn what_is_wrong_with_a_scene_is_said() {
 }
 
 #[test]
+fn no_pattern_panics_whatever_its_numbers_are() {
+    let odd = [0.0, -0.0, 1e-45, 1e-20, 1.0, -1e30, f32::MAX, f32::INFINITY, f32::NAN];
+    let base = Vec3::ONE;
+    for a in odd {
+        for b in odd {
+            let patterns = [
+                Pattern::Checker { other: base, size: a },
+                Pattern::Marble { vein: base, size: a },
+                Pattern::Tiles { other: base, size: a, edge: [b, 1.0], joint: b },
+                Pattern::Tiles { other: base, size: b, edge: [1.0, b], joint: a },
+                Pattern::Masonry { length: a, height: b, joint: b },
+                Pattern::Masonry { length: b, height: a, joint: a },
+            ];
+            for pattern in patterns {
+                let points = odd.map(|x| Vec3::new(x, -x, a));
+                for &point in &points {
+                    std::hint::black_box(pattern.color(base, point));
+                }
+                let columns = [0, 1, 2].map(|axis| points.map(|point| point[axis]));
+                let mut colors = [[0.0; 9]; 3];
+                pattern.colors(base, &columns, &mut colors, 9);
+            }
+        }
+    }
+}
+
+#[test]
 fn no_scene_that_is_cut_or_changed_does_harm() {
     let honest = Forgery::of(&saved(&builtin("whitted").expect("it is made")));
     let length = honest.clone().section("scene").len();
