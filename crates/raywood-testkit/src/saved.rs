@@ -110,7 +110,9 @@ pub fn correct_checksums(file: &mut [u8]) {
             && let Some(bytes) = start.checked_add(length).and_then(|end| file.get(start..end))
         {
             let checksum = crc32fast::hash(bytes);
-            file[line + 32..line + 36].copy_from_slice(&checksum.to_le_bytes());
+            if let Some(place) = file.get_mut(line + 32..line + 36) {
+                place.copy_from_slice(&checksum.to_le_bytes());
+            }
         }
     }
     correct_header(file);
