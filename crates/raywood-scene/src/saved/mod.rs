@@ -1,12 +1,13 @@
 //! Scenes saved with the tree over their surfaces: a [saved tree](raywood::SavedTree) with sections for what a scene has besides.
 
+mod images;
 mod scene;
 mod stored;
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use raywood::{Bvh, SavedGeometry, SavedTree, Vec3};
+use raywood::{Bvh, SavedGeometry, SavedTree};
 
 use crate::error::{LoadError, Place};
 use crate::{Material, Mesh, Scene};
@@ -19,6 +20,12 @@ const SCENE: &str = "scene";
 const NORMALS: &str = "normals";
 /// A colour per vertex.
 const COLORS: &str = "colors";
+/// Both sets of texture coordinates per vertex.
+const TEXTURE_COORDINATES: [&str; 2] = ["texture-coords-0", "texture-coords-1"];
+/// A tangent per vertex.
+const TANGENTS: &str = "tangents";
+/// What textures name.
+const IMAGES: &str = "images";
 /// The material of each triangle.
 const MATERIALS: &str = "materials";
 /// The material of each sphere.
@@ -38,10 +45,19 @@ pub fn save_scene<G: SavedGeometry>(
     // All fields, so that a new one is not forgotten.
     let Scene {
         name: _,
-        mesh: Mesh { triangles: _, normals, colors, materials: of_triangles },
+        mesh:
+            Mesh {
+                triangles: _,
+                normals,
+                colors,
+                texture_coordinates: [first_coordinates, second_coordinates],
+                tangents,
+                materials: of_triangles,
+            },
         spheres: _,
         sphere_materials,
         materials,
+        images,
         lights,
         cameras,
         up,
@@ -59,6 +75,10 @@ pub fn save_scene<G: SavedGeometry>(
     let large = [
         (NORMALS, to_bytes(normals)),
         (COLORS, to_bytes(colors)),
+        (TEXTURE_COORDINATES[0], to_bytes(first_coordinates)),
+        (TEXTURE_COORDINATES[1], to_bytes(second_coordinates)),
+        (TANGENTS, to_bytes(tangents)),
+        (IMAGES, to_bytes(images)),
         (MATERIALS, to_bytes(of_triangles)),
         (SPHERE_MATERIALS, to_bytes(sphere_materials)),
     ];
@@ -112,26 +132,22 @@ impl SavedScene {
         }
 
         let vertices = tree.mesh().positions().len();
-        let per_vertex = |name: &str| {
-            let values: Vec<Vec3> =
-                values(&tree, name).map_err(|problem| fault(name, 0, problem))?;
-            match values.len() == vertices || values.is_empty() {
-                true => Ok(values),
-                false => {
-                    let problem =
-                        format!("{} values, but there are {vertices} vertices", values.len());
-                    Err(fault(name, 0, problem))
-                }
-            }
-        };
-        let numbers = |name: &str| values(&tree, name).map_err(|problem| fault(name, 0, problem));
+        let of = |name, (at, problem)| fault(name, at, problem);
+        let [first, second] = TEXTURE_COORDINATES;
         scene.mesh = Mesh {
             triangles: tree.mesh().clone(),
-            normals: per_vertex(NORMALS)?,
-            colors: per_vertex(COLORS)?,
-            materials: numbers(MATERIALS)?,
+            normals: per_vertex(&tree, vertices, NORMALS).map_err(|f| of(NORMALS, f))?,
+            colors: per_vertex(&tree, vertices, COLORS).map_err(|f| of(COLORS, f))?,
+            texture_coordinates: [
+                per_vertex(&tree, vertices, first).map_err(|f| of(first, f))?,
+                per_vertex(&tree, vertices, second).map_err(|f| of(second, f))?,
+            ],
+            tangents: per_vertex(&tree, vertices, TANGENTS).map_err(|f| of(TANGENTS, f))?,
+            materials: values(&tree, MATERIALS).map_err(|f| of(MATERIALS, f))?,
         };
-        scene.sphere_materials = numbers(SPHERE_MATERIALS)?;
+        scene.sphere_materials =
+            values(&tree, SPHERE_MATERIALS).map_err(|f| of(SPHERE_MATERIALS, f))?;
+        scene.images = values(&tree, IMAGES).map_err(|f| of(IMAGES, f))?;
         Ok(Self { scene, tree })
     }
 }
@@ -143,13 +159,25 @@ fn to_bytes<T: Stored>(values: &[T]) -> Vec<u8> {
     bytes
 }
 
+/// What is wrong with a section, and at which byte of it.
+type Wrong = (usize, String);
+
 /// The values side by side in a section; none if there is no such section.
-fn values<T: Stored>(tree: &SavedTree, name: &str) -> Result<Vec<T>, String> {
+fn values<T: Stored>(tree: &SavedTree, name: &str) -> Result<Vec<T>, Wrong> {
     let bytes = tree.section(name).unwrap_or_default();
     let mut reader = Reader { bytes, at: 0 };
     let mut values = Vec::with_capacity(bytes.len() / size_of::<T>());
     while reader.at < bytes.len() {
-        values.push(T::get(&mut reader).map_err(|fault| fault.problem)?);
+        values.push(T::get(&mut reader).map_err(|fault| (fault.at, fault.problem))?);
     }
     Ok(values)
+}
+
+/// The same of one value for each vertex, or none at all.
+fn per_vertex<T: Stored>(tree: &SavedTree, vertices: usize, name: &str) -> Result<Vec<T>, Wrong> {
+    let values = values(tree, name)?;
+    match values.len() == vertices || values.is_empty() {
+        true => Ok(values),
+        false => Err((0, format!("{} values, but there are {vertices} vertices", values.len()))),
+    }
 }

@@ -3,7 +3,10 @@
 use raywood::Vec3;
 
 use super::stored::{Fault, Reader, Stored, stored_enum, stored_struct};
-use crate::{Background, Camera, Light, LightKind, Material, Pattern};
+use crate::{
+    Background, Camera, Light, LightKind, Magnification, Material, MetallicRoughness, Pattern,
+    SurfaceTextures, Texture, TextureTransform, Wrap,
+};
 
 /// The version of what stands in the section.
 const VERSION: u32 = 1;
@@ -57,7 +60,26 @@ stored_struct!(Material {
     ior,
     absorption,
     emission,
+    metallic_roughness,
+    textures,
 });
+stored_struct!(MetallicRoughness { base, metallic, roughness, reflectance, transmission });
+stored_struct!(SurfaceTextures {
+    color,
+    opacity,
+    opacity_map,
+    normal,
+    metallic_roughness,
+    glossiness,
+    specular_color,
+    specular,
+    transmission,
+    occlusion,
+    emission,
+});
+stored_struct!(Texture { image, set, transform, wrap, magnification });
+stored_enum!(Wrap { 0 => Repeat {}, 1 => Mirror {}, 2 => Clamp {} });
+stored_enum!(Magnification { 0 => Nearest {}, 1 => Linear {} });
 stored_struct!(Light { name, kind, intensity });
 stored_struct!(Camera { name, eye, target, up, fov_y });
 stored_enum!(Pattern {
@@ -73,3 +95,25 @@ stored_enum!(LightKind {
     2 => Directional { direction },
     3 => Ambient {},
 });
+
+/// Its two rows, all numbers of which are finite.
+impl Stored for TextureTransform {
+    fn put(&self, bytes: &mut Vec<u8>) {
+        self.rows.as_flattened().iter().for_each(|number| number.put(bytes));
+    }
+
+    fn get(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        let start = reader.at;
+        let mut rows = [[0.0f32; 3]; 2];
+        for number in rows.as_flattened_mut() {
+            *number = f32::get(reader)?;
+        }
+        match rows.as_flattened().iter().all(|number| number.is_finite()) {
+            true => Ok(Self { rows }),
+            false => {
+                let problem = "a number of a texture's transform is not finite".to_owned();
+                Err(Fault { at: start, problem })
+            }
+        }
+    }
+}

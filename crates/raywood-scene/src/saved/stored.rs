@@ -18,7 +18,7 @@ pub(super) struct Fault {
 
 impl<'a> Reader<'a> {
     /// The next so many bytes.
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         match self.bytes.get(self.at..).and_then(|rest| rest.get(..count)) {
             Some(bytes) => {
                 self.at += count;
@@ -65,13 +65,55 @@ impl Stored for f32 {
     }
 }
 
-impl Stored for [f32; 2] {
+/// As four bytes.
+impl Stored for u8 {
     fn put(&self, bytes: &mut Vec<u8>) {
-        self.iter().for_each(|number| number.put(bytes));
+        u32::from(*self).put(bytes);
     }
 
     fn get(reader: &mut Reader<'_>) -> Result<Self, Fault> {
-        Ok([f32::get(reader)?, f32::get(reader)?])
+        let start = reader.at;
+        let number = u32::get(reader)?;
+        Self::try_from(number)
+            .map_err(|_| Fault { at: start, problem: format!("{number}, expected at most 255") })
+    }
+}
+
+/// One after the other.
+impl<T: Stored + Copy + Default, const N: usize> Stored for [T; N] {
+    fn put(&self, bytes: &mut Vec<u8>) {
+        self.iter().for_each(|value| value.put(bytes));
+    }
+
+    fn get(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        let mut values = [T::default(); N];
+        for value in &mut values {
+            *value = T::get(reader)?;
+        }
+        Ok(values)
+    }
+}
+
+/// One after the other.
+impl<A: Stored, B: Stored> Stored for (A, B) {
+    fn put(&self, bytes: &mut Vec<u8>) {
+        self.0.put(bytes);
+        self.1.put(bytes);
+    }
+
+    fn get(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        Ok((A::get(reader)?, B::get(reader)?))
+    }
+}
+
+/// As what it holds.
+impl<T: Stored> Stored for Box<T> {
+    fn put(&self, bytes: &mut Vec<u8>) {
+        (**self).put(bytes);
+    }
+
+    fn get(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        T::get(reader).map(Self::new)
     }
 }
 

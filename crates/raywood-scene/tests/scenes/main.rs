@@ -6,5 +6,5 @@ mod formats_hostile;
 mod formats_real;
 mod formats_support;
 mod formats_text;
-mod texture_files;
 mod saved;
+mod texture_files;

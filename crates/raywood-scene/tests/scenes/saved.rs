@@ -4,8 +4,9 @@ use std::path::Path;
 
 use raywood::{Bvh, Joined, Vec3};
 use raywood_scene::{
-    Camera, Light, LightKind, LoadOptions, Material, Pattern, SavedScene, Scene, builtin, builtins,
-    load_bytes, load_file, save_scene,
+    Camera, Encoding, Light, LightKind, LoadOptions, Magnification, Material, MetallicRoughness,
+    Pattern, SavedScene, Scene, SurfaceTextures, Texture, TextureImage, TextureTransform, Wrap,
+    builtin, builtins, load_bytes, load_file, save_scene,
 };
 use raywood_testkit::saved::{Forgery, correct_checksums};
 use raywood_testkit::{Rng, test_scenes};
@@ -64,6 +65,8 @@ fn everything_that_a_scene_can_have_comes_back() {
         ior: color().y,
         absorption: color(),
         emission: color(),
+        metallic_roughness: None,
+        textures: None,
     });
     let direction = color();
     let kinds = [
@@ -87,6 +90,66 @@ fn everything_that_a_scene_can_have_comes_back() {
         scene.up = up;
         comes_back(&scene);
     }
+}
+
+#[test]
+fn textures_come_back() {
+    let texture = Texture {
+        image: 1,
+        set: 1,
+        transform: TextureTransform::new([0.25, -3.0], 0.3, [2.0, 0.5]),
+        wrap: [Wrap::Mirror, Wrap::Clamp],
+        magnification: Magnification::Nearest,
+    };
+    let all = SurfaceTextures {
+        color: Some(texture),
+        opacity: Some(0.5),
+        opacity_map: Some(Texture::new(0)),
+        normal: Some((texture, 0.75)),
+        metallic_roughness: Some(texture),
+        glossiness: Some(texture),
+        specular_color: Some(texture),
+        specular: Some(texture),
+        transmission: Some(texture),
+        occlusion: Some((texture, 0.25)),
+        emission: Some(Texture::new(0)),
+    };
+    let made_of = MetallicRoughness {
+        base: Vec3::X,
+        metallic: 0.25,
+        roughness: 0.5,
+        reflectance: Vec3::splat(0.04),
+        transmission: 0.125,
+    };
+    let mut scene = builtin("terrain?n=8").expect("it is made");
+    let vertices = scene.mesh.triangles.positions().len();
+    scene.materials[0].metallic_roughness = Some(made_of);
+    scene.materials[0].textures = Some(Box::new(all));
+    scene.mesh.texture_coordinates[1] = (0..vertices).map(|i| [i as f32, -0.5]).collect();
+    scene.mesh.tangents = vec![[0.0, 1.0, 0.0, -1.0]; vertices];
+    let texels = (0..15).map(|i| [i, 2 * i, 255 - i, 17 * i]).collect();
+    let image = TextureImage::new(5, 3, texels, Encoding::Srgb, Some(0.5)).expect("it is small");
+    scene.images = vec![TextureImage::uniform([1, 2, 3, 4], Encoding::Linear), image];
+    comes_back(&scene);
+    let loaded = open(saved(&scene)).expect("it is sound").scene;
+    // Texel by texel, which the text of an image does not tell.
+    assert!(loaded.images == scene.images);
+    assert_eq!(loaded.materials, scene.materials);
+    assert_eq!(loaded.mesh, scene.mesh);
+
+    // What is wrong with them is said.
+    let honest = Forgery::of(&saved(&scene));
+    let refused = |section: &str, change: &dyn Fn(&mut Vec<u8>), expected: &str| {
+        let mut forgery = honest.clone();
+        change(forgery.section(section));
+        let error = open(forgery.file()).expect_err("it is refused");
+        assert!(error.contains(expected), "{error}");
+    };
+    refused("images", &|bytes| bytes[0] = 0, "an image of 0 x 1");
+    refused("images", &|bytes| bytes.truncate(bytes.len() - 1), "more bytes are expected");
+    refused("images", &|bytes| bytes[8] = 9, "is no Encoding");
+    refused("tangents", &|bytes| bytes.truncate(16), "1 values, but there are");
+    refused("texture-coords-1", &|bytes| bytes.truncate(8), "1 values, but there are");
 }
 
 #[test]
