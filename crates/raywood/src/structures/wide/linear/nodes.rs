@@ -13,7 +13,7 @@ pub(super) type Filled = (PackedAabb, usize);
 /// Fills the place of a node, and that of everything below it: first its children side by side, then what is below the first of these, and so on.
 pub(super) fn fill(plan: Planned<'_>, place: Part<'_>, mut below: Part<'_>) -> Filled {
     match plan {
-        Planned::Large(large) => fill_large(large, place, below),
+        Planned::Large(large) => fill_large(*large, place, below),
         Planned::Small(Small { root, .. }) => fill_small(root, place, &mut below),
     }
 }

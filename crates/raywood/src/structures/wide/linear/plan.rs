@@ -9,7 +9,7 @@ use crate::structures::wide::node::WIDTH;
 /// The plan for a node and everything below it.
 pub(super) enum Planned<'t> {
     /// A large one.
-    Large(Large<'t>),
+    Large(Box<Large<'t>>),
     /// One that lies in one piece of the binary tree.
     Small(Small<'t>),
 }
@@ -58,15 +58,14 @@ impl<'t> Planned<'t> {
         let nodes = children.node_lanes().map(|lane| children.all()[lane]).collect();
         let nodes = parallel::map_tasks(nodes, Self::of);
         let nodes_below = nodes.iter().map(|node| 1 + node.nodes_below()).sum();
-        Self::Large(Large { children, nodes, nodes_below })
+        Self::Large(Box::new(Large { children, nodes, nodes_below }))
     }
 
     /// How many nodes lie below the node.
     pub(super) fn nodes_below(&self) -> usize {
         match self {
-            Self::Large(Large { nodes_below, .. }) | Self::Small(Small { nodes_below, .. }) => {
-                *nodes_below
-            }
+            Self::Large(large) => large.nodes_below,
+            Self::Small(small) => small.nodes_below,
         }
     }
 }
