@@ -1,7 +1,7 @@
 //! The order of primitives along a space-filling curve.
 
 use super::driver::Around;
-use super::morton::{Morton, NUMBER_BITS};
+use super::morton::{Morton, NUMBER_BITS, OUTSIDE, number};
 use super::radix_sort::sort_above;
 use super::{PackedAabb, Primitive, Work};
 use crate::simd::huge_pages;
@@ -10,8 +10,8 @@ use crate::{BuildError, Geometry, parallel};
 /// So many primitives, from the first to the last, tell beforehand where about all centres lie.
 const SAMPLES: usize = 4096;
 
-/// One of so many primitives may lie outside of where they were expected. These fall into the cells at the sides.
-const OUTSIDE: usize = 128;
+/// One of so many primitives may lie outside of where they were expected: a curve of their own follows on that of all others.
+const FEW_OUTSIDE: usize = 128;
 
 /// All primitives along the curve: for each the code of its centre, and its number; and what is around all, whose bounds are checked. O(n), in parallel, the same
 /// for any number of threads.
@@ -32,7 +32,8 @@ pub(crate) fn sorted_keys<G: Geometry>(
     // out what is far away, such as the ground around a house, cells are finer.
     let expected = expected_centers(geometry);
     let (around, outside) = encode(geometry, &expected, &mut keys, encoding)?;
-    if outside <= primitives / OUTSIDE {
+    let are_few = outside <= primitives / FEW_OUTSIDE;
+    if are_few {
         encoding_anew.done()?;
     } else {
         let morton = Morton::new(&around.centers);
@@ -40,7 +41,23 @@ pub(crate) fn sorted_keys<G: Geometry>(
         parallel::fill_and_fold(&mut keys, encoding_anew, (), key, |(), ()| ())?;
     }
     sort_above(NUMBER_BITS, &mut keys, sorting)?;
+    if are_few {
+        let inside = keys.len() - outside;
+        order_outside(geometry, &mut keys[inside..]);
+    }
     Ok((keys, around))
+}
+
+/// Orders the primitives that lie outside along a curve of their own.
+fn order_outside<G: Geometry>(geometry: &G, keys: &mut [u64]) {
+    let center = |key: u64| PackedAabb::from(geometry.bounds(number(key))).center();
+    let centers =
+        keys.iter().map(|&key| center(key)).fold(PackedAabb::EMPTY, PackedAabb::including);
+    let morton = Morton::new(&centers);
+    for key in &mut *keys {
+        *key = OUTSIDE | morton.key(center(*key), number(*key));
+    }
+    keys.sort_unstable();
 }
 
 /// About where all centres lie.
@@ -74,8 +91,10 @@ fn encode<G: Geometry>(
             }
             let primitive = Primitive::new(number as u32, bounds);
             around.include(&primitive);
-            *outside += usize::from(!expected.contains(primitive.center()));
-            morton.key(primitive.center(), number as u32)
+            let is_outside = !expected.contains(primitive.center());
+            *outside += usize::from(is_outside);
+            let key = morton.key(primitive.center(), number as u32);
+            if is_outside { key | OUTSIDE } else { key }
         },
         |(around, outside, first_bad), piece| {
             around.grow(&piece.0);

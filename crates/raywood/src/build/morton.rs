@@ -6,8 +6,11 @@ use super::PackedAabb;
 /// How many bits a primitive's number has.
 pub(super) const NUMBER_BITS: u32 = 31;
 
-/// How many bits a code has: what is left of 64.
-const CODE_BITS: u32 = u64::BITS - NUMBER_BITS;
+/// How many bits a code has: what is left of 64, but one.
+const CODE_BITS: u32 = u64::BITS - NUMBER_BITS - 1;
+
+/// Set in the keys of primitives that are not in the box whose cells the codes count: they come last along the curve, and are divided from all others first.
+pub(super) const OUTSIDE: u64 = 1 << 63;
 
 /// How many bits of a code an axis has at most.
 const AXIS_BITS: u32 = 16;
@@ -104,24 +107,24 @@ mod tests {
     #[test]
     fn bits_of_a_cube_go_to_the_axes_by_turns() {
         let morton = Morton::new(&Aabb::new([-1.0; 3], [1.0; 3]).into());
-        // Eleven bits an axis, that of x on top.
+        // Eleven bits for x and y, ten for z, that of x on top.
         assert_eq!(code(&morton, -1.0, -1.0, -1.0), 0);
-        assert_eq!(code(&morton, 1.0, 1.0, 1.0), (1 << 33) - 1);
-        assert_eq!(code(&morton, 0.0, -1.0, -1.0), 1 << 32);
-        assert_eq!(code(&morton, -1.0, 0.0, -1.0), 1 << 31);
-        assert_eq!(code(&morton, -1.0, -1.0, 0.0), 1 << 30);
-        assert_eq!(code(&morton, -1.0, -1.0, -0.5), 1 << 27);
+        assert_eq!(code(&morton, 1.0, 1.0, 1.0), (1 << 32) - 1);
+        assert_eq!(code(&morton, 0.0, -1.0, -1.0), 1 << 31);
+        assert_eq!(code(&morton, -1.0, 0.0, -1.0), 1 << 30);
+        assert_eq!(code(&morton, -1.0, -1.0, 0.0), 1 << 29);
+        assert_eq!(code(&morton, -1.0, -1.0, -0.5), 1 << 26);
     }
 
     #[test]
     fn long_sides_get_the_first_bits() {
         let morton = Morton::new(&Aabb::new([0.0; 3], [1.0, 8.0, 0.0]).into());
-        assert_eq!(code(&morton, 0.0, 4.0, 0.0), 1 << 32);
-        assert_eq!(code(&morton, 0.0, 2.0, 0.0), 1 << 31);
+        assert_eq!(code(&morton, 0.0, 4.0, 0.0), 1 << 31);
+        assert_eq!(code(&morton, 0.0, 2.0, 0.0), 1 << 30);
         // Sides equally long: x first.
-        assert_eq!(code(&morton, 0.5, 0.0, 0.0), 1 << 29);
-        assert_eq!(code(&morton, 0.0, 0.5, 0.0), 1 << 28);
-        // Sixteen bits for y, as many for x, and one that can tell nothing for z.
+        assert_eq!(code(&morton, 0.5, 0.0, 0.0), 1 << 28);
+        assert_eq!(code(&morton, 0.0, 0.5, 0.0), 1 << 27);
+        // Sixteen bits for y and as many for x: none is left that can tell nothing for z.
         assert_eq!(code(&morton, 1.0, 8.0, 0.0).count_ones(), 32);
     }
 
@@ -139,6 +142,6 @@ mod tests {
             assert!(code(bounds.max) < 1 << CODE_BITS, "{bounds:?}");
         }
         let morton = Morton::new(&Aabb::new([-huge; 3], [huge; 3]).into());
-        assert_eq!(code(&morton, huge, huge, huge), (1 << 33) - 1);
+        assert_eq!(code(&morton, huge, huge, huge), (1 << 32) - 1);
     }
 }
