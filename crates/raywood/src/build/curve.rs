@@ -1,7 +1,7 @@
 //! The order of primitives along a space-filling curve.
 
 use super::driver::Around;
-use super::morton::{Morton, NUMBER_BITS, OUTSIDE, number};
+use super::morton::{FAR, Morton, NUMBER_BITS, number};
 use super::radix_sort::sort_above;
 use super::{PackedAabb, Primitive, Work};
 use crate::simd::huge_pages;
@@ -10,8 +10,19 @@ use crate::{BuildError, Geometry, parallel};
 /// So many primitives, from the first to the last, tell beforehand where about all centres lie.
 const SAMPLES: usize = 4096;
 
-/// One of so many primitives may lie outside of where they were expected: a curve of their own follows on that of all others.
+/// One of so many primitives may lie outside of where they were expected. What is near falls into the cells at the sides; for what is far a curve of its own follows on that
+/// of all others.
 const FEW_OUTSIDE: usize = 128;
+
+/// By which share of its length along an axis the box reaches further for what is near.
+const NEAR: f32 = 0.5;
+
+/// How many primitives lie outside of where they were expected, and how many of them far away.
+#[derive(Clone, Copy, Default)]
+struct Outside {
+    all: usize,
+    far: usize,
+}
 
 /// All primitives along the curve: for each the code of its centre, and its number; and what is around all, whose bounds are checked. O(n), in parallel, the same
 /// for any number of threads.
@@ -32,7 +43,7 @@ pub(crate) fn sorted_keys<G: Geometry>(
     // out what is far away, such as the ground around a house, cells are finer.
     let expected = expected_centers(geometry);
     let (around, outside) = encode(geometry, &expected, &mut keys, encoding)?;
-    let are_few = outside <= primitives / FEW_OUTSIDE;
+    let are_few = outside.all <= primitives / FEW_OUTSIDE;
     if are_few {
         encoding_anew.done()?;
     } else {
@@ -42,20 +53,23 @@ pub(crate) fn sorted_keys<G: Geometry>(
     }
     sort_above(NUMBER_BITS, &mut keys, sorting)?;
     if are_few {
-        let inside = keys.len() - outside;
-        order_outside(geometry, &mut keys[inside..]);
+        let near = keys.len() - outside.far;
+        order_far(geometry, &mut keys[near..]);
     }
     Ok((keys, around))
 }
 
-/// Orders the primitives that lie outside along a curve of their own.
-fn order_outside<G: Geometry>(geometry: &G, keys: &mut [u64]) {
+/// Orders the primitives that lie far outside along a curve of their own.
+fn order_far<G: Geometry>(geometry: &G, keys: &mut [u64]) {
+    if keys.is_empty() {
+        return;
+    }
     let center = |key: u64| PackedAabb::from(geometry.bounds(number(key))).center();
     let centers =
         keys.iter().map(|&key| center(key)).fold(PackedAabb::EMPTY, PackedAabb::including);
     let morton = Morton::new(&centers);
     for key in &mut *keys {
-        *key = OUTSIDE | morton.key(center(*key), number(*key));
+        *key = FAR | morton.key(center(*key), number(*key));
     }
     keys.sort_unstable();
 }
@@ -77,9 +91,10 @@ fn encode<G: Geometry>(
     expected: &PackedAabb,
     keys: &mut [u64],
     work: Work<'_>,
-) -> Result<(Around, usize), BuildError> {
+) -> Result<(Around, Outside), BuildError> {
     let morton = Morton::new(expected);
-    let start = (Around::NOTHING, 0, usize::MAX);
+    let near = expected.stretched(NEAR);
+    let start = (Around::NOTHING, Outside::default(), usize::MAX);
     let (around, outside, first_bad) = parallel::fill_and_fold(
         keys,
         work,
@@ -91,14 +106,18 @@ fn encode<G: Geometry>(
             }
             let primitive = Primitive::new(number as u32, bounds);
             around.include(&primitive);
-            let is_outside = !expected.contains(primitive.center());
-            *outside += usize::from(is_outside);
+            outside.all += usize::from(!expected.contains(primitive.center()));
             let key = morton.key(primitive.center(), number as u32);
-            if is_outside { key | OUTSIDE } else { key }
+            if near.contains(primitive.center()) {
+                return key;
+            }
+            outside.far += 1;
+            key | FAR
         },
         |(around, outside, first_bad), piece| {
             around.grow(&piece.0);
-            *outside += piece.1;
+            outside.all += piece.1.all;
+            outside.far += piece.1.far;
             *first_bad = piece.2.min(*first_bad);
         },
     )?;

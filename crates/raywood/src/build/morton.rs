@@ -9,8 +9,8 @@ pub(super) const NUMBER_BITS: u32 = 31;
 /// How many bits a code has: what is left of 64, but one.
 const CODE_BITS: u32 = u64::BITS - NUMBER_BITS - 1;
 
-/// Set in the keys of primitives that are not in the box whose cells the codes count: they come last along the curve, and are divided from all others first.
-pub(super) const OUTSIDE: u64 = 1 << 63;
+/// Set in the keys of primitives that are far from the box whose cells the codes count: they come last along the curve, and are divided from all others first.
+pub(super) const FAR: u64 = 1 << 63;
 
 /// How many bits of a code an axis has at most.
 const AXIS_BITS: u32 = 16;
@@ -29,10 +29,13 @@ pub(super) struct Morton {
 }
 
 impl Morton {
-    /// For points within a box, whose corners are finite.
+    /// For points in and about a box. Of an axis along which it is empty, or not finite, nothing is told.
     pub(super) fn new(centers: &PackedAabb) -> Self {
-        // Halves, whose differences do not overflow.
-        let extent = |axis: usize| 0.5 * centers.max()[axis] - 0.5 * centers.min()[axis];
+        let extent = |axis: usize| {
+            // Halves, whose differences do not overflow.
+            let extent = 0.5 * centers.max()[axis] - 0.5 * centers.min()[axis];
+            if extent > 0.0 && extent < f32::INFINITY { extent } else { 0.0 }
+        };
         let extents = [extent(0), extent(1), extent(2)];
 
         // The highest bit says which half of the box along its longest side, and so on.
@@ -143,5 +146,13 @@ mod tests {
         }
         let morton = Morton::new(&Aabb::new([-huge; 3], [huge; 3]).into());
         assert_eq!(code(&morton, huge, huge, huge), (1 << 32) - 1);
+        for bounds in [
+            Aabb::EMPTY,
+            Aabb::new([f32::NAN; 3], [f32::NAN; 3]),
+            Aabb::new([0.0, 0.0, f32::NEG_INFINITY], [1.0, f32::INFINITY, 1.0]),
+        ] {
+            let morton = Morton::new(&bounds.into());
+            assert!(code(&morton, 0.5, 0.5, 0.5) < 1 << CODE_BITS, "{bounds:?}");
+        }
     }
 }

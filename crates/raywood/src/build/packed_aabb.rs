@@ -88,6 +88,15 @@ impl PackedAabb {
         Aabb::from(*self).is_empty()
     }
 
+    /// The box, longer by a share of its length along each axis to either side.
+    pub(super) fn stretched(&self, share: f32) -> Self {
+        let beyond = self.extent().map(|length| share * length);
+        Self {
+            min: lanes(self.min, beyond, |min, beyond| min - beyond),
+            max: lanes(self.max, beyond, |max, beyond| max + beyond),
+        }
+    }
+
     /// Whether it holds a point.
     #[inline(always)]
     pub(super) fn contains(&self, point: [f32; 4]) -> bool {
