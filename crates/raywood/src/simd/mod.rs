@@ -1,4 +1,4 @@
-//! Vectors of several numbers at once, on whatever instructions the processor has: the only unsafe code of the library.
+//! Vectors of several numbers at once, on whatever instructions the processor has: with `storage.rs` the only unsafe code of the library.
 //!
 //! Kernels are written once, generic over [`Simd`], and compiled for every [`SimdLevel`]; [`dispatch_on`] enters the one to use. Values of a
 //! level's vector types come from its token alone, and the token exists only where the processor has the instructions: so what is done with the

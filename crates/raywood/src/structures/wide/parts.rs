@@ -42,7 +42,7 @@ impl Parts {
     /// Those of which the bits are set, of a tree with such a box.
     pub(super) fn from_bits(bits: Vec<u64>, bounds: &Aabb) -> Self {
         if bits.is_empty() {
-            return Self { bits, center: Vec3::ZERO, half: 0.0 };
+            return Self::none();
         }
         let (center, half) = part_margin::center_and_half(bounds);
         Self { bits, center, half }
