@@ -1,7 +1,7 @@
 //! The order of primitives along a space-filling curve.
 
 use super::driver::Around;
-use super::morton::{FAR, Morton, NUMBER_BITS, number};
+use super::morton::{FAR, KeyBits, Morton};
 use super::radix_sort::sort_above;
 use super::{PackedAabb, Primitive, Work};
 use crate::simd::huge_pages;
@@ -24,52 +24,78 @@ struct Outside {
     far: usize,
 }
 
-/// All primitives along the curve: for each the code of its centre, and its number; and what is around all, whose bounds are checked. O(n), in parallel, the same
-/// for any number of threads.
+/// All primitives along the curve.
+pub(crate) struct SortedKeys {
+    /// For each the code of its centre, and its number.
+    pub(crate) keys: Vec<u64>,
+    /// How the bits of keys are divided.
+    pub(crate) bits: KeyBits,
+    /// What is around all.
+    pub(crate) around: Around,
+}
+
+/// By how much of their codes keys are sorted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// By the first 32 bits, which takes three quarters of the time: what these cannot tell apart is in no order.
+    Coarse,
+    /// By all bits.
+    Full,
+}
+
+/// Finds the order of primitives along the curve, and checks their bounds. O(n), in parallel, the same for any number of threads.
 pub(crate) fn sorted_keys<G: Geometry>(
     geometry: &G,
+    precision: Precision,
     work: Work<'_>,
-) -> Result<(Vec<u64>, Around), BuildError> {
+) -> Result<SortedKeys, BuildError> {
     let primitives = geometry.len();
     if primitives > BuildError::MAX_PRIMITIVES {
         return Err(BuildError::TooManyPrimitives { primitives });
     }
     if primitives == 0 {
-        return Ok((Vec::new(), Around::NOTHING));
+        let bits = KeyBits::for_primitives(0);
+        return Ok(SortedKeys { keys: Vec::new(), bits, around: Around::NOTHING });
     }
+    let bits = KeyBits::for_primitives(primitives);
     let [encoding, encoding_anew, sorting] = work.shares([2.0, 1.0, 1.5]);
     let mut keys = huge_pages::zeros(primitives);
     // Codes count cells of a box around nearly all centres. Most scenes need not be looked at twice, for a few primitives tell where that lies; and where it leaves
     // out what is far away, such as the ground around a house, cells are finer.
     let expected = expected_centers(geometry);
-    let (around, outside) = encode(geometry, &expected, &mut keys, encoding)?;
+    let (around, outside) =
+        encode(geometry, &Morton::new(&expected, bits), &expected, &mut keys, encoding)?;
     let are_few = outside.all <= primitives / FEW_OUTSIDE;
     if are_few {
         encoding_anew.done()?;
     } else {
-        let morton = Morton::new(&around.centers);
+        let morton = Morton::new(&around.centers, bits);
         let key = |_: &mut (), place| key(geometry, &morton, place as u32);
         parallel::fill_and_fold(&mut keys, encoding_anew, (), key, |(), ()| ())?;
     }
-    sort_above(NUMBER_BITS, &mut keys, sorting)?;
+    let unsorted = match precision {
+        Precision::Coarse => bits.below_coarse_code(),
+        Precision::Full => bits.below_code(),
+    };
+    sort_above(unsorted, &mut keys, sorting)?;
     if are_few {
         let near = keys.len() - outside.far;
-        order_far(geometry, &mut keys[near..]);
+        order_far(geometry, bits, &mut keys[near..]);
     }
-    Ok((keys, around))
+    Ok(SortedKeys { keys, bits, around })
 }
 
 /// Orders the primitives that lie far outside along a curve of their own.
-fn order_far<G: Geometry>(geometry: &G, keys: &mut [u64]) {
+fn order_far<G: Geometry>(geometry: &G, bits: KeyBits, keys: &mut [u64]) {
     if keys.is_empty() {
         return;
     }
-    let center = |key: u64| PackedAabb::from(geometry.bounds(number(key))).center();
+    let center = |key: u64| PackedAabb::from(geometry.bounds(bits.number(key))).center();
     let centers =
         keys.iter().map(|&key| center(key)).fold(PackedAabb::EMPTY, PackedAabb::including);
-    let morton = Morton::new(&centers);
+    let morton = Morton::new(&centers, bits);
     for key in &mut *keys {
-        *key = FAR | morton.key(center(*key), number(*key));
+        *key = FAR | morton.key(center(*key), bits.number(*key));
     }
     keys.sort_unstable();
 }
@@ -88,11 +114,11 @@ fn expected_centers<G: Geometry>(geometry: &G) -> PackedAabb {
 /// Writes the keys of all primitives, whose centres are expected in a box. Tells what is around them, whose bounds are checked, and how many centres lie outside.
 fn encode<G: Geometry>(
     geometry: &G,
+    morton: &Morton,
     expected: &PackedAabb,
     keys: &mut [u64],
     work: Work<'_>,
 ) -> Result<(Around, Outside), BuildError> {
-    let morton = Morton::new(expected);
     let near = expected.stretched(NEAR);
     let start = (Around::NOTHING, Outside::default(), usize::MAX);
     let (around, outside, first_bad) = parallel::fill_and_fold(

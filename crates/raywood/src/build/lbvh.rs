@@ -1,8 +1,8 @@
 //! The linear BVH: primitives sorted along a space-filling curve, divided where the curve turns. Lauterbach et al., "Fast BVH Construction on GPUs", Eurographics 2009.
 
-use super::curve::sorted_keys;
+use super::curve::{Precision, SortedKeys, sorted_keys};
 use super::driver::{PARALLEL_SUBTREES, Subtree};
-use super::morton::number;
+use super::morton::KeyBits;
 use super::{Cancelled, PackedAabb, Stretch, Work};
 use crate::structures::{Bvh2, Node};
 use crate::{Aabb, BuildError, BuildOptions, Geometry, parallel};
@@ -14,14 +14,16 @@ pub(super) fn build<G: Geometry>(
     work: Work<'_>,
 ) -> Result<Bvh2, BuildError> {
     let [ordering, growing, copying] = work.shares([4.5, 5.0, 1.0]);
-    let (mut keys, _) = sorted_keys(geometry, ordering)?;
+    let sorted = sorted_keys(geometry, Precision::Coarse, ordering)?;
+    let SortedKeys { mut keys, bits, .. } = sorted;
     let n = keys.len();
     if n == 0 {
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     }
-    let builder = Lbvh { geometry, max_leaf_size: options.clamped().max_leaf_size };
-    let nodes = builder.grow(Stretch::all(&mut keys, growing))?.into_nodes(copying)?;
-    let indices = parallel::map_watched(n, work.without_progress(), |place| number(keys[place]))?;
+    let builder = Lbvh { geometry, bits, max_leaf_size: options.clamped().max_leaf_size };
+    let nodes = builder.grow(Stretch::all(&mut keys, bits, growing))?.into_nodes(copying)?;
+    let number = |place: usize| bits.number(keys[place]);
+    let indices = parallel::map_watched(n, work.without_progress(), number)?;
     Ok(Bvh2::from_parts(nodes, indices))
 }
 
@@ -31,6 +33,7 @@ const UNKNOWN: Node = Node::leaf(Aabb::EMPTY, 0, 0);
 /// A tree that is being built.
 struct Lbvh<'a, G> {
     geometry: &'a G,
+    bits: KeyBits,
     max_leaf_size: usize,
 }
 
@@ -73,7 +76,7 @@ impl<G: Geometry> Lbvh<'_, G> {
     /// Gives all nodes of a subtree their boxes, those of its primitives from `first` on.
     fn measure(&self, nodes: &mut [Node], keys: &[u64], first: usize) {
         // A loop of nothing but reading what lies all over the memory, so that the processor waits for many things at a time.
-        let primitive = |key: &u64| PackedAabb::from(self.geometry.bounds(number(*key)));
+        let primitive = |key: &u64| PackedAabb::from(self.geometry.bounds(self.bits.number(*key)));
         let primitives: Vec<_> = keys.iter().map(primitive).collect();
         for place in (0..nodes.len()).rev() {
             // Children come after their parents.

@@ -26,9 +26,9 @@ mod stretch;
 mod work;
 
 pub use builder::Builder;
-pub(crate) use curve::sorted_keys;
+pub(crate) use curve::{Precision, SortedKeys, sorted_keys};
 pub use memory::BuildMemory;
-pub(crate) use morton::number as number_in_key;
+pub(crate) use morton::KeyBits;
 pub use options::{BuildOptions, TriangleTest};
 pub(crate) use packed_aabb::PackedAabb;
 pub use preset::BuildPreset;

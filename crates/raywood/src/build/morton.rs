@@ -3,12 +3,6 @@
 
 use super::PackedAabb;
 
-/// How many bits a primitive's number has.
-pub(super) const NUMBER_BITS: u32 = 31;
-
-/// How many bits a code has: what is left of 64, but one.
-const CODE_BITS: u32 = u64::BITS - NUMBER_BITS - 1;
-
 /// Set in the keys of primitives that are far from the box whose cells the codes count: they come last along the curve, and are divided from all others first.
 pub(super) const FAR: u64 = 1 << 63;
 
@@ -17,6 +11,55 @@ const AXIS_BITS: u32 = 16;
 
 /// How many values the halves of a coordinate have, each of which stands in a table.
 const HALF: usize = 1 << (AXIS_BITS / 2);
+
+/// How the bits of keys are divided: [`FAR`], below it a code, and below that the number of a primitive, which takes as few bits as the numbers of all allow.
+#[derive(Clone, Copy)]
+pub(crate) struct KeyBits {
+    /// How many bits a number has.
+    number: u32,
+}
+
+impl KeyBits {
+    /// The most bits a number may have: so many primitives there can be.
+    const MOST: u32 = 31;
+
+    /// The fewest: a code of 43 bits tells all apart that longer ones would.
+    const FEWEST: u32 = 20;
+
+    /// For so many primitives.
+    pub(super) fn for_primitives(primitives: usize) -> Self {
+        let needed = primitives.next_power_of_two().trailing_zeros();
+        Self { number: needed.clamp(Self::FEWEST, Self::MOST) }
+    }
+
+    /// Above so many bits lie the first 32 of a code.
+    pub(super) fn below_coarse_code(self) -> u32 {
+        Self::MOST
+    }
+
+    /// Above so many bits lies the code.
+    pub(super) fn below_code(self) -> u32 {
+        self.number
+    }
+
+    /// The number in a key.
+    #[inline(always)]
+    pub(crate) fn number(self, key: u64) -> u32 {
+        (key & !(u64::MAX << self.number)) as u32
+    }
+
+    /// Whether keys have the same code.
+    #[inline(always)]
+    pub(super) fn same_code(self, a: u64, b: u64) -> bool {
+        (a ^ b) >> self.number == 0
+    }
+
+    /// Whether the first 32 bits of their codes are the same.
+    #[inline(always)]
+    pub(super) fn same_coarse_code(self, a: u64, b: u64) -> bool {
+        (a ^ b) >> Self::MOST == 0
+    }
+}
 
 /// How points become codes.
 pub(super) struct Morton {
@@ -30,7 +73,7 @@ pub(super) struct Morton {
 
 impl Morton {
     /// For points in and about a box. Of an axis along which it is empty, or not finite, nothing is told.
-    pub(super) fn new(centers: &PackedAabb) -> Self {
+    pub(super) fn new(centers: &PackedAabb, key_bits: KeyBits) -> Self {
         let extent = |axis: usize| {
             // Halves, whose differences do not overflow.
             let extent = 0.5 * centers.max()[axis] - 0.5 * centers.min()[axis];
@@ -40,7 +83,8 @@ impl Morton {
 
         // The highest bit says which half of the box along its longest side, and so on.
         let (mut sides, mut bits) = (extents, [0; 3]);
-        let mut axes = [0; CODE_BITS as usize];
+        let mut axes = [0; (u64::BITS - 1) as usize];
+        let axes = &mut axes[key_bits.number as usize..];
         for axis_of_bit in axes.iter_mut().rev() {
             let side = |axis: usize| if bits[axis] < AXIS_BITS { sides[axis] } else { -1.0 };
             let longest = |a: usize, b: usize| if side(b) > side(a) { b } else { a };
@@ -51,13 +95,13 @@ impl Morton {
 
         let mut spread = [[[0; HALF]; 2]; 3];
         let mut placed = [0; 3];
-        for (bit, &axis) in axes.iter().enumerate() {
+        for (&axis, bit) in axes.iter().zip(key_bits.number..) {
             let (half, bit_of_half) = (placed[axis] / 8, placed[axis] % 8);
             placed[axis] += 1;
             // Values with this bit, of which it is the highest, are those without it once more.
             let (without, with) = spread[axis][half].split_at_mut(1 << bit_of_half);
             for (code, without) in with.iter_mut().zip(without) {
-                *code = *without | 1 << (bit as u32 + NUMBER_BITS);
+                *code = *without | 1 << bit;
             }
         }
         let cells = |axis: usize| (1u32 << bits[axis]) as f32;
@@ -86,30 +130,21 @@ impl Morton {
     }
 }
 
-/// The number of the primitive in the lower bits of a key.
-#[inline(always)]
-pub(crate) fn number(key: u64) -> u32 {
-    (key & ((1 << NUMBER_BITS) - 1)) as u32
-}
-
-/// Whether keys have the same code.
-#[inline(always)]
-pub(super) fn same_code(a: u64, b: u64) -> bool {
-    (a ^ b) >> NUMBER_BITS == 0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Aabb;
 
+    /// For as many primitives as there can be: their codes have 32 bits.
+    const BITS: KeyBits = KeyBits { number: KeyBits::MOST };
+
     fn code(morton: &Morton, x: f32, y: f32, z: f32) -> u64 {
-        morton.key([x, y, z, 0.0], 0) >> NUMBER_BITS
+        morton.key([x, y, z, 0.0], 0) >> BITS.number
     }
 
     #[test]
     fn bits_of_a_cube_go_to_the_axes_by_turns() {
-        let morton = Morton::new(&Aabb::new([-1.0; 3], [1.0; 3]).into());
+        let morton = Morton::new(&Aabb::new([-1.0; 3], [1.0; 3]).into(), BITS);
         // Eleven bits for x and y, ten for z, that of x on top.
         assert_eq!(code(&morton, -1.0, -1.0, -1.0), 0);
         assert_eq!(code(&morton, 1.0, 1.0, 1.0), (1 << 32) - 1);
@@ -121,7 +156,7 @@ mod tests {
 
     #[test]
     fn long_sides_get_the_first_bits() {
-        let morton = Morton::new(&Aabb::new([0.0; 3], [1.0, 8.0, 0.0]).into());
+        let morton = Morton::new(&Aabb::new([0.0; 3], [1.0, 8.0, 0.0]).into(), BITS);
         assert_eq!(code(&morton, 0.0, 4.0, 0.0), 1 << 31);
         assert_eq!(code(&morton, 0.0, 2.0, 0.0), 1 << 30);
         // Sides equally long: x first.
@@ -139,20 +174,20 @@ mod tests {
             Aabb::new([1.0; 3], [1.0; 3]),
             Aabb::new([0.0; 3], [1e-45, 0.0, 0.0]),
         ] {
-            let morton = Morton::new(&bounds.into());
+            let morton = Morton::new(&bounds.into(), BITS);
             let code = |corner: crate::Vec3| code(&morton, corner.x, corner.y, corner.z);
             assert_eq!(code(bounds.min), 0, "{bounds:?}");
-            assert!(code(bounds.max) < 1 << CODE_BITS, "{bounds:?}");
+            assert!(code(bounds.max) < 1 << 32, "{bounds:?}");
         }
-        let morton = Morton::new(&Aabb::new([-huge; 3], [huge; 3]).into());
+        let morton = Morton::new(&Aabb::new([-huge; 3], [huge; 3]).into(), BITS);
         assert_eq!(code(&morton, huge, huge, huge), (1 << 32) - 1);
         for bounds in [
             Aabb::EMPTY,
             Aabb::new([f32::NAN; 3], [f32::NAN; 3]),
             Aabb::new([0.0, 0.0, f32::NEG_INFINITY], [1.0, f32::INFINITY, 1.0]),
         ] {
-            let morton = Morton::new(&bounds.into());
-            assert!(code(&morton, 0.5, 0.5, 0.5) < 1 << CODE_BITS, "{bounds:?}");
+            let morton = Morton::new(&bounds.into(), BITS);
+            assert!(code(&morton, 0.5, 0.5, 0.5) < 1 << 32, "{bounds:?}");
         }
     }
 }

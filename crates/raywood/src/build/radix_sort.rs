@@ -41,6 +41,22 @@ pub(super) fn sort_above(
     Ok(())
 }
 
+/// The same of a part of a list.
+pub(super) fn sort_slice_above(
+    bits: u32,
+    numbers: &mut [u64],
+    work: Work<'_>,
+) -> Result<(), Cancelled> {
+    if numbers.len() <= FEW {
+        numbers.sort_unstable();
+        return Ok(());
+    }
+    let mut sorted = numbers.to_vec();
+    sort_above(bits, &mut sorted, work)?;
+    numbers.copy_from_slice(&sorted);
+    Ok(())
+}
+
 /// Copies all numbers to another place, ordered by one digit and else as before. Copies none, and says so, if all have the same digit.
 fn move_by_digit(
     shift: u32,

@@ -3,29 +3,40 @@
 
 use super::curve::key;
 use super::driver::must_halve;
-use super::morton::{Morton, NUMBER_BITS, number, same_code};
-use super::radix_sort::sort_above;
+use super::morton::{KeyBits, Morton};
+use super::radix_sort::{sort_above, sort_slice_above};
 use super::{Cancelled, PackedAabb, Work};
 use crate::{Geometry, parallel};
 
 /// Some primitives side by side on the curve, from which a subtree is made.
 pub(crate) struct Stretch<'a> {
-    /// Their codes and numbers, in ascending order.
+    /// Their codes and numbers, in ascending order as far as `order` says.
     keys: &'a mut [u64],
+    bits: KeyBits,
     /// Where they start in the array of all.
     first: usize,
     /// The level of their node, from 1.
     depth: usize,
-    /// Whether no code can tell them apart: their centres are in one place.
-    alike: bool,
+    order: Order,
     /// What building their subtree is of the whole build.
     work: Work<'a>,
 }
 
+/// How keys are sorted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Order {
+    /// By the first 32 bits of their codes.
+    Coarse,
+    /// By all bits.
+    Full,
+    /// No code can tell the primitives apart: their centres are in one place.
+    Alike,
+}
+
 impl<'a> Stretch<'a> {
-    /// All primitives.
-    pub(crate) fn all(keys: &'a mut [u64], work: Work<'a>) -> Self {
-        Self { keys, first: 0, depth: 1, alike: false, work }
+    /// All primitives, sorted by the first bits of their codes at least.
+    pub(crate) fn all(keys: &'a mut [u64], bits: KeyBits, work: Work<'a>) -> Self {
+        Self { keys, bits, first: 0, depth: 1, order: Order::Coarse, work }
     }
 
     /// How many primitives there are.
@@ -57,14 +68,14 @@ impl<'a> Stretch<'a> {
     /// Divides it where the highest bit changes in which codes differ; in the middle where the tree might else become too deep, or where no code can tell the
     /// primitives apart. There must be two of them.
     pub(crate) fn split<G: Geometry>(self, geometry: &G) -> (Self, Self) {
-        let Self { keys, first, depth, mut alike, work } = self;
+        let Self { keys, bits, first, depth, mut order, work } = self;
         let count = keys.len();
-        let halve = alike || must_halve(count, depth);
-        if !halve && same_code(keys[0], keys[count - 1]) {
-            // Of a build that is stopped it does not matter.
-            alike = !encode_anew(geometry, keys, work).unwrap_or(false);
+        let must_halve = must_halve(count, depth);
+        if !must_halve && order != Order::Alike {
+            // Of a build that is stopped no order matters.
+            order = sort_if_alike(geometry, keys, bits, order, work).unwrap_or(order);
         }
-        let left_count = match halve || alike {
+        let left_count = match must_halve || order == Order::Alike {
             true => count / 2,
             false => {
                 let differing = keys[0] ^ keys[count - 1];
@@ -76,30 +87,55 @@ impl<'a> Stretch<'a> {
         let depth = depth + 1;
         let [left_work, right_work] = work.shares([left.len() as f64, right.len() as f64]);
         (
-            Self { keys: left, first, depth, alike, work: left_work },
-            Self { keys: right, first: first + left_count, depth, alike, work: right_work },
+            Self { keys: left, bits, first, depth, order, work: left_work },
+            Self { keys: right, bits, first: first + left_count, depth, order, work: right_work },
         )
     }
 }
 
-/// Gives primitives whose codes are the same new ones, which tell them apart, and sorts them. Says whether that can be done.
+/// Makes sure that the first and the last key have different codes, and are sorted as far as these tell: by the rest of their codes if what they are sorted by is the same, and by new
+/// codes if all of it is. Says how they are sorted then.
+#[inline(always)]
+fn sort_if_alike<G: Geometry>(
+    geometry: &G,
+    keys: &mut [u64],
+    bits: KeyBits,
+    mut order: Order,
+    work: Work<'_>,
+) -> Result<Order, Cancelled> {
+    let last = keys.len() - 1;
+    if order == Order::Coarse && bits.same_coarse_code(keys[0], keys[last]) {
+        sort_slice_above(bits.below_code(), keys, work.without_progress())?;
+        order = Order::Full;
+    }
+    if bits.same_code(keys[0], keys[last]) {
+        order = encode_anew(geometry, keys, bits, work)?;
+    }
+    Ok(order)
+}
+
+/// Gives primitives whose codes are the same new ones, which tell them apart if that can be done, and sorts them.
 #[inline(never)]
 fn encode_anew<G: Geometry>(
     geometry: &G,
     keys: &mut [u64],
+    bits: KeyBits,
     work: Work<'_>,
-) -> Result<bool, Cancelled> {
+) -> Result<Order, Cancelled> {
     let around = |centers: &mut PackedAabb, place: usize| {
-        let bounds = PackedAabb::from(geometry.bounds(number(keys[place])));
+        let bounds = PackedAabb::from(geometry.bounds(bits.number(keys[place])));
         *centers = centers.including(bounds.center());
     };
     let (count, work) = (keys.len(), work.without_progress());
     let nothing = PackedAabb::EMPTY;
     let centers = parallel::fold_numbers(count, work, nothing, around, PackedAabb::grow)?;
-    let morton = Morton::new(&centers);
-    let key = |place: usize| key(geometry, &morton, number(keys[place]));
+    let morton = Morton::new(&centers, bits);
+    let key = |place: usize| key(geometry, &morton, bits.number(keys[place]));
     let mut sorted = parallel::map_watched(count, work, key)?;
-    sort_above(NUMBER_BITS, &mut sorted, work)?;
+    sort_above(bits.below_code(), &mut sorted, work)?;
     keys.copy_from_slice(&sorted);
-    Ok(!same_code(keys[0], keys[count - 1]))
+    match bits.same_code(keys[0], keys[count - 1]) {
+        true => Ok(Order::Alike),
+        false => Ok(Order::Full),
+    }
 }

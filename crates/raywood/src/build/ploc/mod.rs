@@ -6,8 +6,8 @@ mod layout;
 mod merges;
 mod nearest;
 
-use super::curve::sorted_keys;
-use super::{Cancelled, Work, morton};
+use super::curve::{Precision, SortedKeys, sorted_keys};
+use super::{Cancelled, Work};
 use crate::structures::Bvh2;
 use crate::{BuildError, BuildOptions, Geometry, SimdLevel, parallel};
 use clusters::{Cluster, clusters_of_primitives};
@@ -26,11 +26,12 @@ pub(super) fn build<G: Geometry>(
 ) -> Result<Bvh2, BuildError> {
     let [ordering, reading, clustering, laying_out] = work.shares([5.0, 1.0, 5.0, 4.0]);
     let options = options.clamped();
-    let (keys, around) = sorted_keys(geometry, ordering)?;
+    let sorted = sorted_keys(geometry, Precision::Full, ordering)?;
+    let SortedKeys { keys, bits, around } = sorted;
     if keys.is_empty() {
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     }
-    let number = |place: usize| morton::number(keys[place]);
+    let number = |place: usize| bits.number(keys[place]);
     let order = parallel::map_watched(keys.len(), work.without_progress(), number)?;
     drop(keys);
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::tree::{Bough, Pair, Piece, Tree};
 use super::window::{Window, is_triangle};
-use crate::build::{PackedAabb, Work, number_in_key};
+use crate::build::{KeyBits, PackedAabb, Work};
 use crate::geometry::{LANES, TriangleBlock};
 use crate::parallel::join_if;
 use crate::simd::Part;
@@ -19,6 +19,7 @@ pub(super) struct LeafFill<'a, G> {
     pub(super) geometry: &'a G,
     /// All primitives in the order of the curve.
     pub(super) keys: &'a [u64],
+    pub(super) bits: KeyBits,
     /// One by half the surface of the box around everything; infinite if that has none.
     pub(super) per_area: f64,
     pub(super) work: Work<'a>,
@@ -55,7 +56,7 @@ impl<G: Geometry> LeafFill<'_, G> {
 
     fn piece(&self, piece: &mut Piece, blocks: &mut Part<'_>) -> Known {
         let mut window = Window::default();
-        window.read(self.geometry, self.keys, piece.span());
+        window.read(self.geometry, self.keys, self.bits, piece.span());
         piece.leaves = vec![PackedAabb::EMPTY; piece.starts.len() - 1];
         self.bough(piece, piece.root, blocks, &window)
     }
@@ -138,7 +139,7 @@ impl<G: Geometry> LeafFill<'_, G> {
         let mut bounds = box_around(corners);
         let mut mixed = false;
         for (number, (&key, corners)) in keys.iter().zip(corners).enumerate() {
-            let (lane, primitive) = (first_lane + number, number_in_key(key));
+            let (lane, primitive) = (first_lane + number, self.bits.number(key));
             if is_triangle(corners) {
                 block.set(lane, primitive, corners.map(|[x, y, z, _]| Vec3::new(x, y, z)));
             } else {

@@ -12,7 +12,7 @@ use super::build::finished;
 use super::collapse::{BLOCK_LINES, NODE_LINES};
 use super::node::Reference;
 use super::parts::Parts;
-use crate::build::{BuildMemory, Stretch, Work, sorted_keys};
+use crate::build::{BuildMemory, Precision, SortedKeys, Stretch, Work, sorted_keys};
 use crate::simd::{Arena, ArenaInMaking};
 use crate::{BuildError, BuildOptions, Builder, Geometry};
 use leaves::LeafFill;
@@ -33,14 +33,15 @@ pub(super) fn build<G: Geometry>(
     work: Work<'_>,
 ) -> Result<WideBvh, BuildError> {
     let [ordering, dividing, filling] = work.shares([5.0, 1.0, 4.0]);
-    let (mut keys, around) = sorted_keys(geometry, ordering)?;
+    let sorted = sorted_keys(geometry, Precision::Coarse, ordering)?;
+    let SortedKeys { mut keys, bits, around } = sorted;
     let bounds = around.bounds.into();
     let finish = |filled| finished(bounds, geometry.len(), options, Parts::none(), filled);
     if keys.is_empty() {
         return Ok(finish((Arena::default(), (Reference::NOTHING, 0))));
     }
     let planter = Planter { geometry, most: options.clamped().wide_leaf_size };
-    let mut tree = planter.grow(Stretch::all(&mut keys, dividing))?;
+    let mut tree = planter.grow(Stretch::all(&mut keys, bits, dividing))?;
     let Sizes { blocks, nodes } = tree.sizes();
     // Now it is known about how large the tree becomes: scenes can be made in which that is more than was to be expected.
     let (block_lines, node_lines) = (BLOCK_LINES * blocks, NODE_LINES * nodes);
@@ -53,7 +54,7 @@ pub(super) fn build<G: Geometry>(
 
     // The blocks of all leaves, and behind them the nodes.
     let per_area = 1.0 / around.bounds.half_area();
-    let leaves = LeafFill { geometry, keys: &keys, per_area, work: filling };
+    let leaves = LeafFill { geometry, keys: &keys, bits, per_area, work: filling };
     let arena = ArenaInMaking::with_room_for(block_lines + node_lines);
     let (arena, _) = arena
         .extended(block_lines, |blocks| leaves.fill(&mut tree, blocks))

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::Geometry;
-use crate::build::number_in_key;
+use crate::build::KeyBits;
 
 /// So many primitives ahead memory is asked for.
 const AHEAD: usize = 24;
@@ -20,14 +20,20 @@ pub(super) struct Window {
 impl Window {
     /// Reads the corners of the primitives of a span.
     #[inline(never)]
-    pub(super) fn read<G: Geometry>(&mut self, geometry: &G, keys: &[u64], span: Range<usize>) {
+    pub(super) fn read<G: Geometry>(
+        &mut self,
+        geometry: &G,
+        keys: &[u64],
+        bits: KeyBits,
+        span: Range<usize>,
+    ) {
         self.first = span.start;
         self.corners.resize(span.len(), NO_TRIANGLE);
         for (corners, place) in self.corners.iter_mut().zip(span) {
             if let Some(&key) = keys.get(place + AHEAD) {
-                geometry.prefetch(number_in_key(key));
+                geometry.prefetch(bits.number(key));
             }
-            match geometry.triangle(number_in_key(keys[place])) {
+            match geometry.triangle(bits.number(keys[place])) {
                 Some([a, b, c]) => {
                     corners[0] = [a.x, a.y, a.z, 0.0];
                     corners[1] = [b.x, b.y, b.z, 0.0];
