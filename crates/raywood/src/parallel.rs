@@ -135,29 +135,22 @@ pub(crate) fn fold_numbers<A: Copy + Send + Sync>(
     Ok(whole)
 }
 
-/// Writes what `step` returns for each number from 0 on to its place, and folds the numbers as [`fold_numbers`] does.
-pub(crate) fn fill_and_fold<T: Send, A: Copy + Send + Sync>(
+/// Has `fill` write pieces of a list, whose first place it is told, and merges in their order what it returns of each. For a build that may be watched.
+pub(crate) fn fill_pieces_and_fold<T: Send, A: Copy + Send + Sync>(
     places: &mut [T],
     work: Work<'_>,
     start: A,
-    step: impl Fn(&mut A, usize) -> T + Sync,
+    fill: impl Fn(usize, &mut [T]) -> A + Sync,
     merge: impl Fn(&mut A, &A) + Sync,
 ) -> Result<A, Cancelled> {
     let mut whole = start;
     work.in_stretches(places.len(), |stretch| {
         let first = stretch.start;
-        let fill_piece = |(piece, places): (usize, &mut [T])| {
-            let mut accumulator = start;
-            for (place, number) in places.iter_mut().zip(first + piece * GRAIN..) {
-                *place = step(&mut accumulator, number);
-            }
-            accumulator
-        };
+        let fill = |(piece, places): (usize, &mut [T])| fill(first + piece * GRAIN, places);
         #[cfg(feature = "rayon")]
-        let pieces: Vec<A> =
-            places[stretch].par_chunks_mut(GRAIN).enumerate().map(fill_piece).collect();
+        let pieces: Vec<A> = places[stretch].par_chunks_mut(GRAIN).enumerate().map(fill).collect();
         #[cfg(not(feature = "rayon"))]
-        let pieces = places[stretch].chunks_mut(GRAIN).enumerate().map(fill_piece);
+        let pieces = places[stretch].chunks_mut(GRAIN).enumerate().map(fill);
         pieces.into_iter().for_each(|piece| merge(&mut whole, &piece));
     })?;
     Ok(whole)

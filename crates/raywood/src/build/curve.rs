@@ -3,9 +3,9 @@
 use super::driver::Around;
 use super::morton::{FAR, KeyBits, Morton};
 use super::radix_sort::sort_above;
-use super::{PackedAabb, Primitive, Work};
-use crate::simd::huge_pages;
-use crate::{BuildError, Geometry, parallel};
+use super::{Cancelled, PackedAabb, Primitive, Work};
+use crate::simd::{Kernel, Simd, dispatch_on, huge_pages};
+use crate::{BuildError, Geometry, SimdLevel, parallel};
 
 /// So many primitives, from the first to the last, tell beforehand where about all centres lie.
 const SAMPLES: usize = 4096;
@@ -17,11 +17,27 @@ const FEW_OUTSIDE: usize = 128;
 /// By which share of its length along an axis the box reaches further for what is near.
 const NEAR: f32 = 0.5;
 
-/// How many primitives lie outside of where they were expected, and how many of them far away.
-#[derive(Clone, Copy, Default)]
-struct Outside {
-    all: usize,
+/// What is seen on the way while keys are made.
+#[derive(Clone, Copy)]
+struct Seen {
+    around: Around,
+    /// How many centres lie outside of where they were expected, and how many of them far away.
+    outside: usize,
     far: usize,
+    /// The first primitive whose bounds are none.
+    first_bad: Option<u32>,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { around: Around::NOTHING, outside: 0, far: 0, first_bad: None };
+
+    /// Makes it what was seen of primitives before and of some behind them.
+    fn add(&mut self, behind: &Self) {
+        self.around.grow(&behind.around);
+        self.outside += behind.outside;
+        self.far += behind.far;
+        self.first_bad = self.first_bad.or(behind.first_bad);
+    }
 }
 
 /// All primitives along the curve.
@@ -62,16 +78,18 @@ pub(crate) fn sorted_keys<G: Geometry>(
     let mut keys = huge_pages::zeros(primitives);
     // Codes count cells of a box around nearly all centres. Most scenes need not be looked at twice, for a few primitives tell where that lies; and where it leaves
     // out what is far away, such as the ground around a house, cells are finer.
-    let expected = expected_centers(geometry);
-    let (around, outside) =
-        encode(geometry, &Morton::new(&expected, bits), &expected, &mut keys, encoding)?;
-    let are_few = outside.all <= primitives / FEW_OUTSIDE;
+    let encoder = Encoder::for_centers_in(expected_centers(geometry), geometry, bits);
+    let seen = encoder.encode(&mut keys, encoding)?;
+    if let Some(primitive) = seen.first_bad {
+        let bounds = geometry.bounds(primitive);
+        return Err(BuildError::BadBounds { primitive, bounds });
+    }
+    let are_few = seen.outside <= primitives / FEW_OUTSIDE;
     if are_few {
         encoding_anew.done()?;
     } else {
-        let morton = Morton::new(&around.centers, bits);
-        let key = |_: &mut (), place| key(geometry, &morton, place as u32);
-        parallel::fill_and_fold(&mut keys, encoding_anew, (), key, |(), ()| ())?;
+        Encoder::for_centers_in(seen.around.centers, geometry, bits)
+            .encode(&mut keys, encoding_anew)?;
     }
     let unsorted = match precision {
         Precision::Coarse => bits.below_coarse_code(),
@@ -79,10 +97,10 @@ pub(crate) fn sorted_keys<G: Geometry>(
     };
     sort_above(unsorted, &mut keys, sorting)?;
     if are_few {
-        let near = keys.len() - outside.far;
+        let near = keys.len() - seen.far;
         order_far(geometry, bits, &mut keys[near..]);
     }
-    Ok(SortedKeys { keys, bits, around })
+    Ok(SortedKeys { keys, bits, around: seen.around })
 }
 
 /// Orders the primitives that lie far outside along a curve of their own.
@@ -95,7 +113,7 @@ fn order_far<G: Geometry>(geometry: &G, bits: KeyBits, keys: &mut [u64]) {
         keys.iter().map(|&key| center(key)).fold(PackedAabb::EMPTY, PackedAabb::including);
     let morton = Morton::new(&centers, bits);
     for key in &mut *keys {
-        *key = FAR | morton.key(center(*key), bits.number(*key));
+        *key = FAR | morton.key_of(geometry, bits.number(*key));
     }
     keys.sort_unstable();
 }
@@ -111,53 +129,62 @@ fn expected_centers<G: Geometry>(geometry: &G) -> PackedAabb {
     centers.fold(PackedAabb::EMPTY, PackedAabb::including)
 }
 
-/// Writes the keys of all primitives, whose centres are expected in a box. Tells what is around them, whose bounds are checked, and how many centres lie outside.
-fn encode<G: Geometry>(
-    geometry: &G,
-    morton: &Morton,
-    expected: &PackedAabb,
-    keys: &mut [u64],
-    work: Work<'_>,
-) -> Result<(Around, Outside), BuildError> {
-    let near = expected.stretched(NEAR);
-    let start = (Around::NOTHING, Outside::default(), usize::MAX);
-    let (around, outside, first_bad) = parallel::fill_and_fold(
-        keys,
-        work,
-        start,
-        |(around, outside, first_bad), number| {
-            let bounds = PackedAabb::from(geometry.bounds(number as u32));
-            if !bounds.is_sound() {
-                *first_bad = number.min(*first_bad);
-            }
-            let primitive = Primitive::new(number as u32, bounds);
-            around.include(&primitive);
-            outside.all += usize::from(!expected.contains(primitive.center()));
-            let key = morton.key(primitive.center(), number as u32);
-            if near.contains(primitive.center()) {
-                return key;
-            }
-            outside.far += 1;
-            key | FAR
-        },
-        |(around, outside, first_bad), piece| {
-            around.grow(&piece.0);
-            outside.all += piece.1.all;
-            outside.far += piece.1.far;
-            *first_bad = piece.2.min(*first_bad);
-        },
-    )?;
-    match first_bad {
-        usize::MAX => Ok((around, outside)),
-        number => {
-            let primitive = number as u32;
-            Err(BuildError::BadBounds { primitive, bounds: geometry.bounds(primitive) })
-        }
+/// What makes keys.
+struct Encoder<'a, G> {
+    geometry: &'a G,
+    morton: Morton,
+    /// Where centres are expected.
+    expected: PackedAabb,
+    /// What is near to that.
+    near: PackedAabb,
+}
+
+impl<'a, G: Geometry> Encoder<'a, G> {
+    fn for_centers_in(expected: PackedAabb, geometry: &'a G, bits: KeyBits) -> Self {
+        let morton = Morton::new(&expected, bits);
+        Self { geometry, morton, expected, near: expected.stretched(NEAR) }
+    }
+
+    /// Writes the keys of all primitives, and tells what it sees on the way.
+    fn encode(&self, keys: &mut [u64], work: Work<'_>) -> Result<Seen, Cancelled> {
+        let level = SimdLevel::active();
+        let piece = |first: usize, keys: &mut [u64]| {
+            dispatch_on(level, EncodePiece { encoder: self, first: first as u32, keys })
+        };
+        parallel::fill_pieces_and_fold(keys, work, Seen::NOTHING, piece, Seen::add)
     }
 }
 
-/// The code of a primitive's centre, and its number.
-#[inline(always)]
-pub(super) fn key<G: Geometry>(geometry: &G, morton: &Morton, primitive: u32) -> u64 {
-    morton.key(PackedAabb::from(geometry.bounds(primitive)).center(), primitive)
+/// Writes the keys of some primitives, from the first of these on.
+struct EncodePiece<'a, G> {
+    encoder: &'a Encoder<'a, G>,
+    first: u32,
+    keys: &'a mut [u64],
+}
+
+impl<G: Geometry> Kernel for EncodePiece<'_, G> {
+    type Output = Seen;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Seen {
+        let Encoder { geometry, morton, expected, near } = self.encoder;
+        let mut seen = Seen::NOTHING;
+        let (mut outside, mut far, mut first_bad) = (0, 0, None);
+        for (key, number) in self.keys.iter_mut().zip(self.first..) {
+            let bounds = PackedAabb::from(geometry.bounds(number));
+            if !bounds.is_sound() {
+                first_bad = first_bad.or(Some(number));
+            }
+            let primitive = Primitive::new(number, bounds);
+            seen.around.include(&primitive);
+            let center = primitive.center();
+            outside += usize::from(!expected.contains(center));
+            *key = morton.key(simd, center, number);
+            if !near.contains(center) {
+                far += 1;
+                *key |= FAR;
+            }
+        }
+        Seen { outside, far, first_bad, ..seen }
+    }
 }

@@ -2,15 +2,11 @@
 //! longest side alone until they are: Vinkler, Bittner and Havran, "Extended Morton Codes for High Performance Bounding Volume Hierarchy Construction", HPG 2017.
 
 use super::PackedAabb;
+use crate::Geometry;
+use crate::simd::{BitPlaces, Portable, Simd};
 
 /// Set in the keys of primitives that are far from the box whose cells the codes count: they come last along the curve, and are divided from all others first.
 pub(super) const FAR: u64 = 1 << 63;
-
-/// How many bits of a code an axis has at most.
-const AXIS_BITS: u32 = 16;
-
-/// How many values the halves of a coordinate have, each of which stands in a table.
-const HALF: usize = 1 << (AXIS_BITS / 2);
 
 /// How the bits of keys are divided: [`FAR`], below it a code, and below that the number of a primitive, which takes as few bits as the numbers of all allow.
 #[derive(Clone, Copy)]
@@ -67,8 +63,8 @@ pub(super) struct Morton {
     scale: [f32; 4],
     /// The number of the last cell on each axis.
     last: [f32; 3],
-    /// For each axis where the bits of its coordinate go: those of the lower half, and those of the upper.
-    spread: [[[u64; HALF]; 2]; 3],
+    /// For each axis where the bits of its coordinate go.
+    places: [BitPlaces; 3],
 }
 
 impl Morton {
@@ -82,51 +78,43 @@ impl Morton {
         let extents = [extent(0), extent(1), extent(2)];
 
         // The highest bit says which half of the box along its longest side, and so on.
-        let (mut sides, mut bits) = (extents, [0; 3]);
-        let mut axes = [0; (u64::BITS - 1) as usize];
-        let axes = &mut axes[key_bits.number as usize..];
-        for axis_of_bit in axes.iter_mut().rev() {
-            let side = |axis: usize| if bits[axis] < AXIS_BITS { sides[axis] } else { -1.0 };
+        let (mut sides, mut bits, mut masks) = (extents, [0; 3], [0; 3]);
+        for bit in (key_bits.number..u64::BITS - 1).rev() {
+            let side = |axis: usize| if bits[axis] < BitPlaces::MOST { sides[axis] } else { -1.0 };
             let longest = |a: usize, b: usize| if side(b) > side(a) { b } else { a };
             let axis = longest(longest(0, 1), 2);
-            (*axis_of_bit, sides[axis]) = (axis, 0.5 * sides[axis]);
+            sides[axis] *= 0.5;
             bits[axis] += 1;
+            masks[axis] |= 1 << bit;
         }
 
-        let mut spread = [[[0; HALF]; 2]; 3];
-        let mut placed = [0; 3];
-        for (&axis, bit) in axes.iter().zip(key_bits.number..) {
-            let (half, bit_of_half) = (placed[axis] / 8, placed[axis] % 8);
-            placed[axis] += 1;
-            // Values with this bit, of which it is the highest, are those without it once more.
-            let (without, with) = spread[axis][half].split_at_mut(1 << bit_of_half);
-            for (code, without) in with.iter_mut().zip(without) {
-                *code = *without | 1 << bit;
-            }
-        }
         let cells = |axis: usize| (1u32 << bits[axis]) as f32;
         let scale = |axis: usize| cells(axis) / extents[axis];
         Self {
             start: centers.min(),
             scale: [scale(0), scale(1), scale(2), 0.0],
             last: [cells(0) - 1.0, cells(1) - 1.0, cells(2) - 1.0],
-            spread,
+            places: masks.map(BitPlaces::new),
         }
     }
 
     /// The code of a point, with the number of a primitive in the bits below it.
     #[inline(always)]
-    pub(super) fn key(&self, center: [f32; 4], number: u32) -> u64 {
+    pub(super) fn key<S: Simd>(&self, simd: S, center: [f32; 4], number: u32) -> u64 {
         let code = |axis: usize| {
             let place = (0.5 * center[axis] - 0.5 * self.start[axis]) * self.scale[axis];
             // Not a number, where the box has no extent, is in the first cell.
             let place = if place > 0.0 { place } else { 0.0 };
             let place = if place < self.last[axis] { place } else { self.last[axis] };
-            let cell = place as i32 as usize;
-            let [low, high] = &self.spread[axis];
-            low[cell % HALF] | high[cell / HALF % HALF]
+            simd.spread_bits(place as i32 as u32, &self.places[axis])
         };
         code(0) | code(1) | code(2) | u64::from(number)
+    }
+
+    /// The same, for few.
+    pub(super) fn key_of<G: Geometry>(&self, geometry: &G, primitive: u32) -> u64 {
+        let bounds = PackedAabb::from(geometry.bounds(primitive));
+        self.key(Portable, bounds.center(), primitive)
     }
 }
 
@@ -139,7 +127,7 @@ mod tests {
     const BITS: KeyBits = KeyBits { number: KeyBits::MOST };
 
     fn code(morton: &Morton, x: f32, y: f32, z: f32) -> u64 {
-        morton.key([x, y, z, 0.0], 0) >> BITS.number
+        morton.key(Portable, [x, y, z, 0.0], 0) >> BITS.number
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Primitives side by side on a space-filling curve, and where they are divided: where the curve turns. Lauterbach et al., "Fast BVH Construction on GPUs", Eurographics 2009;
 //! Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012. Where codes cannot tell primitives apart, they get codes of their own.
 
-use super::curve::key;
 use super::driver::must_halve;
 use super::morton::{KeyBits, Morton};
 use super::radix_sort::{sort_above, sort_slice_above};
@@ -130,7 +129,7 @@ fn encode_anew<G: Geometry>(
     let nothing = PackedAabb::EMPTY;
     let centers = parallel::fold_numbers(count, work, nothing, around, PackedAabb::grow)?;
     let morton = Morton::new(&centers, bits);
-    let key = |place: usize| key(geometry, &morton, bits.number(keys[place]));
+    let key = |place: usize| morton.key_of(geometry, bits.number(keys[place]));
     let mut sorted = parallel::map_watched(count, work, key)?;
     sort_above(bits.below_code(), &mut sorted, work)?;
     keys.copy_from_slice(&sorted);

@@ -13,6 +13,7 @@ mod arena;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod bit_places;
 pub(crate) mod huge_pages;
 mod level;
 mod portable;
@@ -24,6 +25,7 @@ mod tests;
 
 use crate::Ray;
 pub(crate) use arena::{Arena, ArenaInMaking, Part};
+pub(crate) use bit_places::BitPlaces;
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};

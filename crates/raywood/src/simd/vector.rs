@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::BitPlaces;
 use crate::Vec3;
 
 /// A vector of numbers. A set of its lanes is a number with a bit for each.
@@ -78,6 +79,12 @@ pub(crate) trait Simd: Copy {
 
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
+
+    /// A number with its bits in other places.
+    #[inline(always)]
+    fn spread_bits(self, number: u32, places: &BitPlaces) -> u64 {
+        places.look_up(number)
+    }
 
     /// Twice eight numbers from memory.
     #[inline(always)]
