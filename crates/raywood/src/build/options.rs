@@ -30,12 +30,13 @@ pub struct BuildOptions {
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
     pub primitive_cost: f32,
-    /// How many passes at most improve a bounding volume hierarchy after it is built, by moving subtrees to where they cost less. A pass that gains next
-    /// to nothing is the last. `None` leaves it to the structure: four for scenes of instances, whose boxes overlap, none for all other trees.
+    /// How many passes at most improve a bounding volume hierarchy after it is built, by moving subtrees to where they cost less. `None` leaves it to the structure: four for scenes of instances, whose boxes overlap, none for all other trees.
     pub reinsertion_passes: Option<usize>,
     /// Which share of the nodes a pass of reinsertion tries to move, 0 to 1: the largest ones, which matter most. More gain a little more and take
     /// longer in proportion.
     pub reinsertion_share: f32,
+    /// The least share, 0 to 1, by which a pass must lower the cost of the whole tree for another one to follow.
+    pub reinsertion_gain: f32,
     /// About how many cells a grid has for each primitive, 0.01 to 100. More cells make shorter lists, longer walks and more memory.
     pub grid_density: f32,
     /// How many primitives a cell of an octree may hold without being split, at least 1.
@@ -74,6 +75,7 @@ impl Default for BuildOptions {
             primitive_cost: 1.0,
             reinsertion_passes: None,
             reinsertion_share: 0.05,
+            reinsertion_gain: 0.005,
             grid_density: 4.0,
             octree_leaf_size: 8,
             octree_max_depth: crate::structures::octree::MAX_LEVELS,
@@ -104,6 +106,7 @@ impl BuildOptions {
             primitive_cost: cost(self.primitive_cost),
             reinsertion_passes: self.reinsertion_passes,
             reinsertion_share: share(self.reinsertion_share),
+            reinsertion_gain: share(self.reinsertion_gain),
             grid_density: if self.grid_density.is_nan() {
                 Self::default().grid_density
             } else {

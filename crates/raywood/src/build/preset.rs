@@ -42,13 +42,13 @@ impl BuildPreset {
 
     /// What it chooses. `balanced` is [`BuildOptions::default`]; each of the others differs from it as told here, and all else may be changed:
     ///
-    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` | `spatial_splits` |
-    /// | --- | --- | ---: | ---: | --- | ---: | ---: |
-    /// | `fastest` | `Lbvh` | 8 | | none | | |
-    /// | `fast` | `Lbvh` | 8 | | up to 2 | 0.05 | |
-    /// | `balanced` | `Ploc` | 8 | | none; up to 4 for scenes of instances | 0.05 | |
-    /// | `high` | `Ploc` | 4 | | up to 6 | 0.05 | |
-    /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 | 0.3 |
+    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` | `reinsertion_gain` | `spatial_splits` |
+    /// | --- | --- | ---: | ---: | --- | ---: | ---: | ---: |
+    /// | `fastest` | `Lbvh` | 8 | | none | | | |
+    /// | `fast` | `Lbvh` | 8 | | up to 2 | 0.05 | 0.005 | |
+    /// | `balanced` | `Ploc` | 8 | | none; up to 4 for scenes of instances | 0.05 | 0.005 | |
+    /// | `high` | `Ploc` | 8 | | up to 6 | 0.05 | 0.005 | |
+    /// | `best` | `SahBinned` | 1 | 32 | up to 20 | 1.0 | 0.001 | 0.3 |
     pub fn options(self) -> BuildOptions {
         let balanced = BuildOptions::default();
         match self {
@@ -63,15 +63,14 @@ impl BuildPreset {
                 ..balanced
             },
             Self::Balanced => balanced,
-            Self::High => {
-                BuildOptions { wide_leaf_size: 4, reinsertion_passes: Some(6), ..balanced }
-            }
+            Self::High => BuildOptions { reinsertion_passes: Some(6), ..balanced },
             Self::Best => BuildOptions {
                 wide_builder: Builder::SahBinned,
                 bins: 32,
                 wide_leaf_size: 1,
                 reinsertion_passes: Some(20),
                 reinsertion_share: 1.0,
+                reinsertion_gain: 0.001,
                 spatial_splits: 0.3,
                 ..balanced
             },

@@ -14,9 +14,6 @@ use crate::{BuildOptions, parallel};
 use linked_tree::LinkedTree;
 use search::{Move, best_move};
 
-/// Another pass is made only if the last one lowered the cost by this share.
-const LEAST_GAIN: f64 = 0.001;
-
 /// About how many passes gain anything worth while.
 const USUAL_PASSES: usize = 4;
 
@@ -47,7 +44,8 @@ pub(super) fn optimize(
     options: &BuildOptions,
     work: Work<'_>,
 ) -> Result<Bvh2, Cancelled> {
-    let BuildOptions { reinsertion_passes, reinsertion_share, .. } = options.clamped();
+    let BuildOptions { reinsertion_passes, reinsertion_share, reinsertion_gain, .. } =
+        options.clamped();
     let passes = reinsertion_passes.unwrap_or(0);
     // Boxes without area cost nothing wherever they are; two leaves can lie in one way only.
     if passes == 0 || tree.nodes().len() <= 3 || tree.bounds().half_area() <= 0.0 {
@@ -66,7 +64,7 @@ pub(super) fn optimize(
         };
         let gain = pass(&mut tree, reinsertion_share, share)?;
         cost -= gain;
-        if gain <= LEAST_GAIN * cost {
+        if gain <= f64::from(reinsertion_gain) * cost {
             break;
         }
     }
