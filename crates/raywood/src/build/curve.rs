@@ -1,11 +1,12 @@
 //! The order of primitives along a space-filling curve.
 
 use super::driver::Around;
+use super::encode::Encoder;
 use super::morton::{FAR, KeyBits, Morton};
 use super::radix_sort::sort_above;
-use super::{Cancelled, PackedAabb, Primitive, Work};
-use crate::simd::{Kernel, Simd, dispatch_on, huge_pages};
-use crate::{BuildError, Geometry, SimdLevel, parallel};
+use super::{PackedAabb, Work};
+use crate::simd::huge_pages;
+use crate::{BuildError, Geometry};
 
 /// So many primitives, from the first to the last, tell beforehand where about all centres lie.
 const SAMPLES: usize = 4096;
@@ -13,32 +14,6 @@ const SAMPLES: usize = 4096;
 /// One of so many primitives may lie outside of where they were expected. What is near falls into the cells at the sides; for what is far a curve of its own follows on that
 /// of all others.
 const FEW_OUTSIDE: usize = 128;
-
-/// By which share of its length along an axis the box reaches further for what is near.
-const NEAR: f32 = 0.5;
-
-/// What is seen on the way while keys are made.
-#[derive(Clone, Copy)]
-struct Seen {
-    around: Around,
-    /// How many centres lie outside of where they were expected, and how many of them far away.
-    outside: usize,
-    far: usize,
-    /// The first primitive whose bounds are none.
-    first_bad: Option<u32>,
-}
-
-impl Seen {
-    const NOTHING: Self = Self { around: Around::NOTHING, outside: 0, far: 0, first_bad: None };
-
-    /// Makes it what was seen of primitives before and of some behind them.
-    fn add(&mut self, behind: &Self) {
-        self.around.grow(&behind.around);
-        self.outside += behind.outside;
-        self.far += behind.far;
-        self.first_bad = self.first_bad.or(behind.first_bad);
-    }
-}
 
 /// All primitives along the curve.
 pub(crate) struct SortedKeys {
@@ -113,7 +88,7 @@ fn order_far<G: Geometry>(geometry: &G, bits: KeyBits, keys: &mut [u64]) {
         keys.iter().map(|&key| center(key)).fold(PackedAabb::EMPTY, PackedAabb::including);
     let morton = Morton::new(&centers, bits);
     for key in &mut *keys {
-        *key = FAR | morton.key_of(geometry, bits.number(*key));
+        *key = FAR | morton.key(center(*key), bits.number(*key));
     }
     keys.sort_unstable();
 }
@@ -127,64 +102,4 @@ fn expected_centers<G: Geometry>(geometry: &G) -> PackedAabb {
         PackedAabb::from(bounds).center()
     });
     centers.fold(PackedAabb::EMPTY, PackedAabb::including)
-}
-
-/// What makes keys.
-struct Encoder<'a, G> {
-    geometry: &'a G,
-    morton: Morton,
-    /// Where centres are expected.
-    expected: PackedAabb,
-    /// What is near to that.
-    near: PackedAabb,
-}
-
-impl<'a, G: Geometry> Encoder<'a, G> {
-    fn for_centers_in(expected: PackedAabb, geometry: &'a G, bits: KeyBits) -> Self {
-        let morton = Morton::new(&expected, bits);
-        Self { geometry, morton, expected, near: expected.stretched(NEAR) }
-    }
-
-    /// Writes the keys of all primitives, and tells what it sees on the way.
-    fn encode(&self, keys: &mut [u64], work: Work<'_>) -> Result<Seen, Cancelled> {
-        let level = SimdLevel::active();
-        let piece = |first: usize, keys: &mut [u64]| {
-            dispatch_on(level, EncodePiece { encoder: self, first: first as u32, keys })
-        };
-        parallel::fill_pieces_and_fold(keys, work, Seen::NOTHING, piece, Seen::add)
-    }
-}
-
-/// Writes the keys of some primitives, from the first of these on.
-struct EncodePiece<'a, G> {
-    encoder: &'a Encoder<'a, G>,
-    first: u32,
-    keys: &'a mut [u64],
-}
-
-impl<G: Geometry> Kernel for EncodePiece<'_, G> {
-    type Output = Seen;
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Seen {
-        let Encoder { geometry, morton, expected, near } = self.encoder;
-        let mut seen = Seen::NOTHING;
-        let (mut outside, mut far, mut first_bad) = (0, 0, None);
-        for (key, number) in self.keys.iter_mut().zip(self.first..) {
-            let bounds = PackedAabb::from(geometry.bounds(number));
-            if !bounds.is_sound() {
-                first_bad = first_bad.or(Some(number));
-            }
-            let primitive = Primitive::new(number, bounds);
-            seen.around.include(&primitive);
-            let center = primitive.center();
-            outside += usize::from(!expected.contains(center));
-            *key = morton.key(simd, center, number);
-            if !near.contains(center) {
-                far += 1;
-                *key |= FAR;
-            }
-        }
-        Seen { outside, far, first_bad, ..seen }
-    }
 }

@@ -4,6 +4,7 @@
 mod builder;
 mod curve;
 pub(crate) mod driver;
+mod encode;
 mod hlbvh;
 mod lbvh;
 mod median;

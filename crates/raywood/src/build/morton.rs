@@ -2,8 +2,7 @@
 //! longest side alone until they are: Vinkler, Bittner and Havran, "Extended Morton Codes for High Performance Bounding Volume Hierarchy Construction", HPG 2017.
 
 use super::PackedAabb;
-use crate::Geometry;
-use crate::simd::{BitPlaces, Portable, Simd};
+use crate::simd::{BitPlaces, Float, Portable, Simd};
 
 /// Set in the keys of primitives that are far from the box whose cells the codes count: they come last along the curve, and are divided from all others first.
 pub(super) const FAR: u64 = 1 << 63;
@@ -98,23 +97,27 @@ impl Morton {
         }
     }
 
-    /// The code of a point, with the number of a primitive in the bits below it.
+    /// The codes of sixteen points, with the numbers of primitives in the bits below them, which follow on the first.
     #[inline(always)]
-    pub(super) fn key<S: Simd>(&self, simd: S, center: [f32; 4], number: u32) -> u64 {
-        let code = |axis: usize| {
-            let place = (0.5 * center[axis] - 0.5 * self.start[axis]) * self.scale[axis];
+    pub(super) fn keys<S: Simd>(&self, simd: S, centers: &[S::F16; 3], first: u32) -> [u64; 16] {
+        let (zero, half) = (simd.splat16(0.0), simd.splat16(0.5));
+        let mut keys = std::array::from_fn(|lane| u64::from(first) + lane as u64);
+        for (axis, center) in centers.iter().enumerate() {
+            let start = simd.splat16(0.5 * self.start[axis]);
+            let place = (*center * half - start) * simd.splat16(self.scale[axis]);
             // Not a number, where the box has no extent, is in the first cell.
-            let place = if place > 0.0 { place } else { 0.0 };
-            let place = if place < self.last[axis] { place } else { self.last[axis] };
-            simd.spread_bits(place as i32 as u32, &self.places[axis])
-        };
-        code(0) | code(1) | code(2) | u64::from(number)
+            let place = place.larger(zero).smaller(simd.splat16(self.last[axis]));
+            for (key, cell) in keys.iter_mut().zip(simd.whole_numbers(place)) {
+                *key |= simd.spread_bits(cell, &self.places[axis]);
+            }
+        }
+        keys
     }
 
-    /// The same, for few.
-    pub(super) fn key_of<G: Geometry>(&self, geometry: &G, primitive: u32) -> u64 {
-        let bounds = PackedAabb::from(geometry.bounds(primitive));
-        self.key(Portable, bounds.center(), primitive)
+    /// The same of one.
+    pub(super) fn key(&self, center: [f32; 4], number: u32) -> u64 {
+        let [x, y, z, _] = center.map(|coordinate| Portable.splat16(coordinate));
+        self.keys(Portable, &[x, y, z], number)[0]
     }
 }
 
@@ -127,7 +130,7 @@ mod tests {
     const BITS: KeyBits = KeyBits { number: KeyBits::MOST };
 
     fn code(morton: &Morton, x: f32, y: f32, z: f32) -> u64 {
-        morton.key(Portable, [x, y, z, 0.0], 0) >> BITS.number
+        morton.key([x, y, z, 0.0], 0) >> BITS.number
     }
 
     #[test]

@@ -97,13 +97,6 @@ impl PackedAabb {
         }
     }
 
-    /// Whether it holds a point.
-    #[inline(always)]
-    pub(super) fn contains(&self, point: [f32; 4]) -> bool {
-        let holds = |axis: usize| (self.min[axis] <= point[axis]) & (point[axis] <= self.max[axis]);
-        holds(0) & holds(1) & holds(2)
-    }
-
     /// The centre. Does not overflow.
     #[inline(always)]
     pub(crate) fn center(&self) -> [f32; 4] {

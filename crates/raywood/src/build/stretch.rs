@@ -121,15 +121,18 @@ fn encode_anew<G: Geometry>(
     bits: KeyBits,
     work: Work<'_>,
 ) -> Result<Order, Cancelled> {
+    let center = |primitive| PackedAabb::from(geometry.bounds(primitive)).center();
     let around = |centers: &mut PackedAabb, place: usize| {
-        let bounds = PackedAabb::from(geometry.bounds(bits.number(keys[place])));
-        *centers = centers.including(bounds.center());
+        *centers = centers.including(center(bits.number(keys[place])));
     };
     let (count, work) = (keys.len(), work.without_progress());
     let nothing = PackedAabb::EMPTY;
     let centers = parallel::fold_numbers(count, work, nothing, around, PackedAabb::grow)?;
     let morton = Morton::new(&centers, bits);
-    let key = |place: usize| morton.key_of(geometry, bits.number(keys[place]));
+    let key = |place: usize| {
+        let number = bits.number(keys[place]);
+        morton.key(center(number), number)
+    };
     let mut sorted = parallel::map_watched(count, work, key)?;
     sort_above(bits.below_code(), &mut sorted, work)?;
     keys.copy_from_slice(&sorted);

@@ -228,6 +228,13 @@ impl Simd for Avx2 {
     type F8 = F8;
 
     #[inline(always)]
+    fn whole_numbers(self, numbers: F16) -> [u32; 16] {
+        let F16([F8(low), F8(high)]) = numbers;
+        // SAFETY: the token; two vectors are an array of their numbers.
+        unsafe { std::mem::transmute([_mm256_cvttps_epi32(low), _mm256_cvttps_epi32(high)]) }
+    }
+
+    #[inline(always)]
     fn splat16(self, number: f32) -> F16 {
         F16([self.splat8(number); 2])
     }

@@ -208,6 +208,12 @@ impl Simd for Avx512 {
     type F8 = F8;
 
     #[inline(always)]
+    fn whole_numbers(self, numbers: F16) -> [u32; 16] {
+        // SAFETY: the token; a vector is an array of its numbers.
+        unsafe { std::mem::transmute(_mm512_cvttps_epi32(numbers.0)) }
+    }
+
+    #[inline(always)]
     fn spread_bits(self, number: u32, places: &BitPlaces) -> u64 {
         // SAFETY: the token. (Not with AVX2 alone: some of those processors take a hundred cycles for it.)
         unsafe { _pdep_u64(u64::from(number), places.mask) }

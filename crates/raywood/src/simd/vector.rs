@@ -80,6 +80,12 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
 
+    /// The whole numbers in numbers from 0 to 2^24, what is behind the point cut off.
+    #[inline(always)]
+    fn whole_numbers(self, numbers: Self::F16) -> [u32; 16] {
+        numbers.to_array().map(|number| number as u32)
+    }
+
     /// A number with its bits in other places.
     #[inline(always)]
     fn spread_bits(self, number: u32, places: &BitPlaces) -> u64 {
