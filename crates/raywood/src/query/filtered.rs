@@ -27,7 +27,7 @@ impl<G: Geometry> Bvh<G> {
     pub fn intersect_with<F: HitFilter>(&self, ray: &Ray, options: QueryOptions<F>) -> Option<Hit> {
         let ray = PreparedRay::new(ray)?;
         let mut chooser = options.chooser(&self.geometry, &ray);
-        self.tree.choose_hit::<G, _, false>(&self.geometry, &ray, &mut chooser)
+        self.tree.choose_hit::<_, false>(&self.geometry, &ray, &mut chooser)
     }
 
     /// Whether any hit at `t_min <= t < t_max` counts under the options. It stops at the first that does.
@@ -44,6 +44,6 @@ impl<G: Geometry> Bvh<G> {
     pub fn occluded_with<F: HitFilter>(&self, ray: &Ray, options: QueryOptions<F>) -> bool {
         let Some(ray) = PreparedRay::new(ray) else { return false };
         let mut chooser = options.chooser(&self.geometry, &ray);
-        self.tree.choose_hit::<G, _, true>(&self.geometry, &ray, &mut chooser).is_some()
+        self.tree.choose_hit::<_, true>(&self.geometry, &ray, &mut chooser).is_some()
     }
 }

@@ -5,7 +5,7 @@ use crate::{Geometry, Hit, PreparedRay, PrimitiveHit};
 
 /// The hit of a ray with one primitive; depends on nothing else.
 #[inline]
-pub(crate) fn hit<G: Geometry>(
+pub(crate) fn hit<G: Geometry + ?Sized>(
     geometry: &G,
     ray: &PreparedRay,
     primitive: u32,
@@ -15,7 +15,11 @@ pub(crate) fn hit<G: Geometry>(
 
 /// Whether a primitive blocks a ray.
 #[inline]
-pub(crate) fn blocks<G: Geometry>(geometry: &G, ray: &PreparedRay, primitive: u32) -> bool {
+pub(crate) fn blocks<G: Geometry + ?Sized>(
+    geometry: &G,
+    ray: &PreparedRay,
+    primitive: u32,
+) -> bool {
     hit(geometry, ray, primitive).is_some()
 }
 
@@ -40,7 +44,12 @@ impl Nearest {
 
     /// Tests a primitive. Testing it twice changes nothing.
     #[inline]
-    pub(crate) fn test<G: Geometry>(&mut self, geometry: &G, ray: &PreparedRay, primitive: u32) {
+    pub(crate) fn test<G: Geometry + ?Sized>(
+        &mut self,
+        geometry: &G,
+        ray: &PreparedRay,
+        primitive: u32,
+    ) {
         if let Some(hit) = hit(geometry, ray, primitive) {
             self.offer(primitive, hit);
         }

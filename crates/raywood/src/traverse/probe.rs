@@ -5,6 +5,9 @@ use std::ops::{Add, AddAssign};
 
 /// Is told what a traversal does. The unit type `()` ignores it all and compiles to nothing.
 pub trait Probe {
+    /// Whether it makes nothing of what it is told, as `()`: then it need not be told anything.
+    const IS_BLIND: bool = false;
+
     /// Some nodes of a tree, or cells of a grid, were entered.
     #[inline]
     fn nodes(&mut self, count: usize) {
@@ -39,7 +42,9 @@ pub trait Probe {
     }
 }
 
-impl Probe for () {}
+impl Probe for () {
+    const IS_BLIND: bool = true;
+}
 
 /// A probe that counts, over as many rays as it is handed to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

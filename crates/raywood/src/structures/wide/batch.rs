@@ -10,23 +10,23 @@ use super::sink::Sink;
 use super::source::Source;
 use super::step::{any_blocks, leaf_hits, take_closest};
 use super::{WideBvh, packet};
+use crate::Geometry;
 use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd, dispatch_on};
 use crate::traverse::nearest::Nearest;
-use crate::{AccelerationStructure, Geometry};
 
 /// How many rays are in flight.
 const RAYS: usize = 64;
 
 /// Finds the closest hits of many rays.
-pub(super) struct Closest<'a, G, R, H, const FAST: bool> {
+pub(super) struct Closest<'a, R, H, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) rays: R,
     pub(super) hits: H,
 }
 
-impl<G: Geometry, R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, G, R, H, FAST> {
+impl<R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, R, H, FAST> {
     type Output = ();
 
     #[inline(always)]
@@ -39,16 +39,16 @@ impl<G: Geometry, R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, G
             let piece =
                 packet::Piece { tree, geometry, rays: rays.part(first, packet::RAYS), first };
             let mut hits = hits.part(first, piece.rays.len());
-            packet::closest::<S, G, R, _, FAST>(simd, &piece, &mut hits, &mut scratch, &mut rest);
+            packet::closest::<S, R, _, FAST>(simd, &piece, &mut hits, &mut scratch, &mut rest);
         }
         for &number in &rest {
             hits.set(number, None);
         }
         let finish = |number: usize, nearest: Nearest| hits.set(number, nearest.into_hit());
-        let wave = Wave::<G, R, _, false, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let wave = Wave::<R, _, false, FAST> { tree, geometry, rays, numbers: &rest, finish };
         let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
-            hits.set(number, tree.intersect(geometry, &rays.ray(number), &mut ()));
+            hits.set(number, tree.closest_hit(geometry, &rays.ray(number)));
         }
     }
 }
@@ -60,14 +60,14 @@ fn prefetch_next<S: Simd, R: Source>(simd: S, rays: &R, first: usize) {
 }
 
 /// Finds out whether anything blocks each of many rays.
-pub(super) struct Any<'a, G, R, const FAST: bool> {
+pub(super) struct Any<'a, R, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) rays: R,
     pub(super) occluded: &'a mut [bool],
 }
 
-impl<G: Geometry, R: Source, const FAST: bool> Kernel for Any<'_, G, R, FAST> {
+impl<R: Source, const FAST: bool> Kernel for Any<'_, R, FAST> {
     type Output = ();
 
     #[inline(always)]
@@ -80,16 +80,16 @@ impl<G: Geometry, R: Source, const FAST: bool> Kernel for Any<'_, G, R, FAST> {
             prefetch_next(simd, &rays, first);
             let piece =
                 packet::Piece { tree, geometry, rays: rays.part(first, packet::RAYS), first };
-            packet::any::<S, G, R, FAST>(simd, &piece, occluded, &mut scratch, &mut rest);
+            packet::any::<S, R, FAST>(simd, &piece, occluded, &mut scratch, &mut rest);
         }
         for &number in &rest {
             occluded[number] = false;
         }
         let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
-        let wave = Wave::<G, R, _, true, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let wave = Wave::<R, _, true, FAST> { tree, geometry, rays, numbers: &rest, finish };
         let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
-            occluded[number] = tree.occluded(geometry, &rays.ray(number), &mut ());
+            occluded[number] = tree.any_hit(geometry, &rays.ray(number));
         }
     }
 }
@@ -101,16 +101,16 @@ const IDLE: u32 = Reference::NOTHING.0 - 2;
 /// found no room for their stacks and must be traced otherwise.
 ///
 /// A function of its own: together with the packets, its loops would be short of registers.
-struct Wave<'a, G, R, F, const ANY: bool, const FAST: bool> {
+struct Wave<'a, R, F, const ANY: bool, const FAST: bool> {
     tree: &'a WideBvh,
-    geometry: &'a G,
+    geometry: &'a dyn Geometry,
     rays: R,
     numbers: &'a [usize],
     finish: F,
 }
 
-impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Kernel
-    for Wave<'_, G, R, F, ANY, FAST>
+impl<R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Kernel
+    for Wave<'_, R, F, ANY, FAST>
 {
     type Output = Vec<usize>;
 
@@ -182,13 +182,11 @@ impl<G: Geometry, R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FA
                 let leaf = Reference(currents[*place]);
                 let Flight { ray, nearest, .. } = &mut *flight;
                 if ANY {
-                    if any_blocks::<S, G, FAST>(simd, tree, geometry, leaf, found, ray) {
+                    if any_blocks::<S, FAST>(simd, tree, geometry, leaf, found, ray) {
                         nearest.block();
                         flight.end();
                     }
-                } else if take_closest::<S, G, FAST>(
-                    simd, tree, geometry, leaf, found, ray, nearest,
-                ) {
+                } else if take_closest::<S, FAST>(simd, tree, geometry, leaf, found, ray, nearest) {
                     flight.cull(simd);
                 }
             }

@@ -18,16 +18,14 @@ pub(crate) trait Chooser {
 }
 
 /// Looks for the closest hit that counts; with `ANY`, for any.
-pub(super) struct Chosen<'a, G, C, const ANY: bool, const FAST: bool> {
+pub(super) struct Chosen<'a, C, const ANY: bool, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a PreparedRay,
     pub(super) chooser: &'a mut C,
 }
 
-impl<G: Geometry, C: Chooser, const ANY: bool, const FAST: bool> Kernel
-    for Chosen<'_, G, C, ANY, FAST>
-{
+impl<C: Chooser, const ANY: bool, const FAST: bool> Kernel for Chosen<'_, C, ANY, FAST> {
     type Output = Option<Hit>;
 
     #[inline(always)]
@@ -88,8 +86,8 @@ fn choose<C: Chooser>(nearest: &mut Nearest, found: Hit, chooser: &mut C) {
 /// Chooses among the hits with a primitive that must be tested by itself. One that is no triangle may be hit again where its closest hit does not count.
 #[cold]
 #[inline(never)]
-fn choose_of<G: Geometry, C: Chooser>(
-    geometry: &G,
+fn choose_of<C: Chooser>(
+    geometry: &dyn Geometry,
     primitive: u32,
     ray: &PreparedRay,
     nearest: &mut Nearest,

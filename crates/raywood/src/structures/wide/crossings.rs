@@ -25,14 +25,14 @@ pub(crate) trait HitVisitor {
 }
 
 /// Tells a visitor of every hit within the ray's interval and up to the visitor's limit, in any order.
-pub(super) struct Crossings<'a, G, V> {
+pub(super) struct Crossings<'a, V> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a PreparedRay,
     pub(super) visitor: &'a mut V,
 }
 
-impl<G: Geometry, V: HitVisitor> Kernel for Crossings<'_, G, V> {
+impl<V: HitVisitor> Kernel for Crossings<'_, V> {
     type Output = ControlFlow<()>;
 
     #[inline(always)]
@@ -167,8 +167,8 @@ fn visit_doubtful<V: HitVisitor>(
 /// Tells of the hits with a primitive that is no triangle.
 #[cold]
 #[inline(never)]
-fn visit_other<G: Geometry, V: HitVisitor>(
-    geometry: &G,
+fn visit_other<V: HitVisitor>(
+    geometry: &dyn Geometry,
     primitive: u32,
     ray: &PreparedRay,
     visitor: &mut V,

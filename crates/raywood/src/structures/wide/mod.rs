@@ -8,6 +8,7 @@ mod chosen;
 mod collapse;
 mod crossings;
 mod division;
+mod entries;
 mod flight;
 pub(crate) mod linear;
 mod node;
@@ -47,10 +48,9 @@ use node::Reference;
 pub(crate) use node::WideNode;
 use parts::{Parts, Told};
 pub(crate) use saved::SavedWide;
-use sink::Sink;
 use slabs::Slabs;
 pub(crate) use sound::Unsound;
-use source::Source;
+use source::{FromPoint, Towards};
 
 /// A bounding volume hierarchy of sixteen children a node, over triangles in blocks of eight, traced by vector instructions: see
 /// [`SimdLevel`].
@@ -158,38 +158,10 @@ impl WideBvh {
         self.arena.address(reference.line())
     }
 
-    /// The closest hits of many rays.
-    fn closest_of_batch<G: Geometry, R: Source, H: Sink>(&self, geometry: &G, rays: R, hits: H) {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                batch::Closest::<_, _, _, false> { tree: self, geometry, rays, hits },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                batch::Closest::<_, _, _, true> { tree: self, geometry, rays, hits },
-            ),
-        }
-    }
-
-    /// Whether anything blocks each of many rays.
-    fn any_of_batch<G: Geometry, R: Source>(&self, geometry: &G, rays: R, occluded: &mut [bool]) {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                batch::Any::<_, _, false> { tree: self, geometry, rays, occluded },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                batch::Any::<_, _, true> { tree: self, geometry, rays, occluded },
-            ),
-        }
-    }
-
     /// Tells a visitor of every hit of a ray, each crossing of a closed surface once, in any order; until it has enough. Always by the watertight test.
-    pub(crate) fn visit_crossings<G: Geometry, V: HitVisitor>(
+    pub(crate) fn visit_crossings<V: HitVisitor>(
         &self,
-        geometry: &G,
+        geometry: &dyn Geometry,
         ray: &PreparedRay,
         visitor: &mut V,
     ) -> ControlFlow<()> {
@@ -197,39 +169,20 @@ impl WideBvh {
     }
 
     /// The closest of the hits that count; with `ANY`, any of them.
-    pub(crate) fn choose_hit<G: Geometry, C: Chooser, const ANY: bool>(
+    pub(crate) fn choose_hit<C: Chooser, const ANY: bool>(
         &self,
-        geometry: &G,
+        geometry: &dyn Geometry,
         ray: &PreparedRay,
         chooser: &mut C,
     ) -> Option<Hit> {
         match self.triangle_test {
             TriangleTest::Watertight => dispatch_on(
                 self.level,
-                chosen::Chosen::<_, _, ANY, false> { tree: self, geometry, ray, chooser },
+                chosen::Chosen::<_, ANY, false> { tree: self, geometry, ray, chooser },
             ),
             TriangleTest::Fast => dispatch_on(
                 self.level,
-                chosen::Chosen::<_, _, ANY, true> { tree: self, geometry, ray, chooser },
-            ),
-        }
-    }
-
-    /// The closest hit of a ray, unless it lies beyond `limit`: then it, another or none.
-    pub(crate) fn intersect_within<G: Geometry>(
-        &self,
-        geometry: &G,
-        ray: &Ray,
-        limit: f32,
-    ) -> Option<Hit> {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                single::ClosestWithin::<_, false> { tree: self, geometry, ray, limit },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                single::ClosestWithin::<_, true> { tree: self, geometry, ray, limit },
+                chosen::Chosen::<_, ANY, true> { tree: self, geometry, ray, chooser },
             ),
         }
     }
@@ -248,37 +201,25 @@ impl AccelerationStructure for WideBvh {
         ray: &Ray,
         probe: &mut P,
     ) -> Option<Hit> {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                single::Closest::<_, _, false> { tree: self, geometry, ray, probe },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                single::Closest::<_, _, true> { tree: self, geometry, ray, probe },
-            ),
+        match P::IS_BLIND {
+            true => self.closest_hit(geometry, ray),
+            false => self.probed_closest_hit(geometry, ray, probe),
         }
     }
 
     fn occluded<G: Geometry, P: Probe>(&self, geometry: &G, ray: &Ray, probe: &mut P) -> bool {
-        match self.triangle_test {
-            TriangleTest::Watertight => dispatch_on(
-                self.level,
-                single::Any::<_, _, false> { tree: self, geometry, ray, probe },
-            ),
-            TriangleTest::Fast => dispatch_on(
-                self.level,
-                single::Any::<_, _, true> { tree: self, geometry, ray, probe },
-            ),
+        match P::IS_BLIND {
+            true => self.any_hit(geometry, ray),
+            false => self.probed_any_hit(geometry, ray, probe),
         }
     }
 
     fn intersect_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.closest_of_batch(geometry, rays, hits);
+        self.closest_hits(geometry, rays, hits);
     }
 
     fn occluded_batch<G: Geometry>(&self, geometry: &G, rays: &[Ray], occluded: &mut [bool]) {
-        self.any_of_batch(geometry, rays, occluded);
+        self.any_hits(geometry, rays, occluded);
     }
 
     fn intersect_from<G: Geometry>(
@@ -288,7 +229,7 @@ impl AccelerationStructure for WideBvh {
         directions: &[Vec3],
         hits: HitColumnsMut<'_>,
     ) {
-        self.closest_of_batch(geometry, source::FromPoint { origin, directions }, hits);
+        self.closest_hits_from(geometry, FromPoint { origin, directions }, hits);
     }
 
     fn occluded_towards<G: Geometry>(
@@ -298,7 +239,7 @@ impl AccelerationStructure for WideBvh {
         (points, beside): (&[Vec3], &[u32]),
         occluded: &mut [bool],
     ) {
-        self.any_of_batch(geometry, source::Towards { target, points, beside, end }, occluded);
+        self.any_hits_towards(geometry, Towards { target, points, beside, end }, occluded);
     }
 
     fn simd_level(&self) -> Option<SimdLevel> {

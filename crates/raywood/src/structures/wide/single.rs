@@ -8,33 +8,33 @@ use crate::traverse::nearest::Nearest;
 use crate::{Geometry, Hit, PreparedRay, Probe, Ray};
 
 /// Looks for the closest hit.
-pub(super) struct Closest<'a, G, P, const FAST: bool> {
+pub(super) struct Closest<'a, P, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a Ray,
     pub(super) probe: &'a mut P,
 }
 
-impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Closest<'_, G, P, FAST> {
+impl<P: Probe, const FAST: bool> Kernel for Closest<'_, P, FAST> {
     type Output = Option<Hit>;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, probe } = self;
         let ray = PreparedRay::new(ray)?;
-        closest::<S, G, P, FAST>(simd, tree, geometry, &ray, Nearest::new(&ray), probe)
+        closest::<S, P, FAST>(simd, tree, geometry, &ray, Nearest::new(&ray), probe)
     }
 }
 
 /// Looks for the closest hit up to a limit: what lies beyond may be found or not.
-pub(super) struct ClosestWithin<'a, G, const FAST: bool> {
+pub(super) struct ClosestWithin<'a, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a Ray,
     pub(super) limit: f32,
 }
 
-impl<G: Geometry, const FAST: bool> Kernel for ClosestWithin<'_, G, FAST> {
+impl<const FAST: bool> Kernel for ClosestWithin<'_, FAST> {
     type Output = Option<Hit>;
 
     #[inline(always)]
@@ -42,16 +42,16 @@ impl<G: Geometry, const FAST: bool> Kernel for ClosestWithin<'_, G, FAST> {
         let Self { tree, geometry, ray, limit } = self;
         let ray = PreparedRay::new(ray)?;
         let nearest = Nearest::within(&ray, limit);
-        closest::<S, G, (), FAST>(simd, tree, geometry, &ray, nearest, &mut ())
+        closest::<S, (), FAST>(simd, tree, geometry, &ray, nearest, &mut ())
     }
 }
 
 /// The closest hit of a ray, of which nothing was found yet.
 #[inline(always)]
-fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
+fn closest<S: Simd, P: Probe, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
-    geometry: &G,
+    geometry: &dyn Geometry,
     ray: &PreparedRay,
     mut nearest: Nearest,
     probe: &mut P,
@@ -68,7 +68,7 @@ fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
         if current.is_leaf() {
             probe.primitives(current.count());
             let hits = leaf_hits::<S, FAST>(simd, tree, current, ray, nearest.t_max());
-            take_closest::<S, G, FAST>(simd, tree, geometry, current, &hits, ray, &mut nearest);
+            take_closest::<S, FAST>(simd, tree, geometry, current, &hits, ray, &mut nearest);
         } else {
             let node = tree.node(current);
             probe.boxes(WIDTH);
@@ -88,14 +88,14 @@ fn closest<S: Simd, G: Geometry, P: Probe, const FAST: bool>(
 }
 
 /// Looks for any hit.
-pub(super) struct Any<'a, G, P, const FAST: bool> {
+pub(super) struct Any<'a, P, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a Ray,
     pub(super) probe: &'a mut P,
 }
 
-impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
+impl<P: Probe, const FAST: bool> Kernel for Any<'_, P, FAST> {
     type Output = bool;
 
     #[inline(always)]
@@ -114,7 +114,7 @@ impl<G: Geometry, P: Probe, const FAST: bool> Kernel for Any<'_, G, P, FAST> {
             if current.is_leaf() {
                 probe.primitives(current.count());
                 let hits = leaf_hits::<S, FAST>(simd, tree, current, &ray, ray.t_max);
-                if any_blocks::<S, G, FAST>(simd, tree, geometry, current, &hits, &ray) {
+                if any_blocks::<S, FAST>(simd, tree, geometry, current, &hits, &ray) {
                     return true;
                 }
             } else {

@@ -34,10 +34,10 @@ pub(super) fn leaf_hits<S: Simd, const FAST: bool>(
 
 /// Takes the closest hit of a leaf that the vector test found, and tells whether there was one closer than all before.
 #[inline(always)]
-pub(super) fn take_closest<S: Simd, G: Geometry, const FAST: bool>(
+pub(super) fn take_closest<S: Simd, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
-    geometry: &G,
+    geometry: &dyn Geometry,
     leaf: Reference,
     hits: &BlockHits,
     ray: &PreparedRay,
@@ -63,8 +63,8 @@ pub(super) fn take_closest<S: Simd, G: Geometry, const FAST: bool>(
 /// Tests the doubtful lanes of a block one by one.
 #[cold]
 #[inline(never)]
-fn test_doubtful<G: Geometry>(
-    geometry: &G,
+fn test_doubtful(
+    geometry: &dyn Geometry,
     ray: &PreparedRay,
     primitives: &[u32; LANES],
     doubtful: u32,
@@ -77,10 +77,10 @@ fn test_doubtful<G: Geometry>(
 
 /// Whether any of the hits of a leaf that the vector test found blocks the ray.
 #[inline(always)]
-pub(super) fn any_blocks<S: Simd, G: Geometry, const FAST: bool>(
+pub(super) fn any_blocks<S: Simd, const FAST: bool>(
     simd: S,
     tree: &WideBvh,
-    geometry: &G,
+    geometry: &dyn Geometry,
     leaf: Reference,
     hits: &BlockHits,
     ray: &PreparedRay,
@@ -94,8 +94,8 @@ pub(super) fn any_blocks<S: Simd, G: Geometry, const FAST: bool>(
 /// Whether one of the doubtful lanes of a block blocks the ray.
 #[cold]
 #[inline(never)]
-fn doubtful_blocks<G: Geometry>(
-    geometry: &G,
+fn doubtful_blocks(
+    geometry: &dyn Geometry,
     ray: &PreparedRay,
     primitives: &[u32; LANES],
     doubtful: u32,

@@ -4,12 +4,12 @@ use super::kind::Kind;
 use super::leaving::{Leaving, Plane};
 use super::triangles::{GREATEST_VOLUME, Triangles};
 use super::{ALL, GROUP, Packet, Piece, TOLERANCE};
+use crate::PreparedRay;
 use crate::simd::{Float, Simd, dispatch_on};
 use crate::structures::wide::node::Reference;
 use crate::structures::wide::source::Source;
 use crate::structures::wide::step;
 use crate::traverse::nearest::hit as hit_one;
-use crate::{Geometry, PreparedRay};
 
 /// What an edge function's error hardly ever exceeds, as a share of what it may be.
 const LIKELY_ERROR: f32 = 1.0 / 16.0;
@@ -154,9 +154,9 @@ impl Packet {
     /// Tests a triangle against some rays of a group as single rays are tested, which is exact.
     #[cold]
     #[inline(never)]
-    pub(super) fn settle<G: Geometry, R: Source, K: Kind>(
+    pub(super) fn settle<R: Source, K: Kind>(
         &mut self,
-        piece: &Piece<'_, G, R>,
+        piece: &Piece<'_, R>,
         leaf: Reference,
         lane: usize,
         group: usize,

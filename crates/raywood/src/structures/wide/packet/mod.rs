@@ -128,9 +128,9 @@ struct Leaf {
 }
 
 /// Rays for a packet, and what they are sent through.
-pub(super) struct Piece<'a, G, R> {
+pub(super) struct Piece<'a, R> {
     pub(super) tree: &'a WideBvh,
-    pub(super) geometry: &'a G,
+    pub(super) geometry: &'a dyn Geometry,
     /// At most 256.
     pub(super) rays: R,
     /// The number of the first among all rays of the batch.
@@ -152,9 +152,9 @@ impl Scratch {
 
 /// Finds the closest hits of rays that share their origin. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool>(
+pub(super) fn closest<S: Simd, R: Source, H: Sink, const FAST: bool>(
     simd: S,
-    piece: &Piece<'_, G, R>,
+    piece: &Piece<'_, R>,
     hits: &mut H,
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
@@ -166,11 +166,11 @@ pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool
         hits.prefetch(simd);
         match common {
             Common::Image => {
-                packet.trace::<S, G, R, Reflected, FAST>(simd, piece, stack);
+                packet.trace::<S, R, Reflected, FAST>(simd, piece, stack);
                 packet.finish::<S, R, H, Reflected>(simd, &piece.rays, hits, rest, piece.first);
             }
             _ => {
-                packet.trace::<S, G, R, Closest, FAST>(simd, piece, stack);
+                packet.trace::<S, R, Closest, FAST>(simd, piece, stack);
                 packet.finish::<S, R, H, Closest>(simd, &piece.rays, hits, rest, piece.first);
             }
         }
@@ -181,9 +181,9 @@ pub(super) fn closest<S: Simd, G: Geometry, R: Source, H: Sink, const FAST: bool
 
 /// Finds out whether anything blocks rays that share their origin, their end or their direction. Appends the numbers of rays that must be traced otherwise to `rest`.
 #[inline(always)]
-pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
+pub(super) fn any<S: Simd, R: Source, const FAST: bool>(
     simd: S,
-    piece: &Piece<'_, G, R>,
+    piece: &Piece<'_, R>,
     occluded: &mut [bool],
     scratch: &mut Scratch,
     rest: &mut Vec<usize>,
@@ -193,9 +193,9 @@ pub(super) fn any<S: Simd, G: Geometry, R: Source, const FAST: bool>(
     while let Some(common) = packet.gather::<S, R, true>(simd, &piece.rays, piece.tree) {
         match common {
             Common::Direction => {
-                packet.trace::<S, G, R, BlockedParallel, FAST>(simd, piece, stack);
+                packet.trace::<S, R, BlockedParallel, FAST>(simd, piece, stack);
             }
-            _ => packet.trace::<S, G, R, Blocked, FAST>(simd, piece, stack),
+            _ => packet.trace::<S, R, Blocked, FAST>(simd, piece, stack),
         }
         packet.finish_any(simd, occluded, rest, piece.first);
         packet.is_later = true;
@@ -238,10 +238,10 @@ impl Packet {
 
     /// Sends the packet through the tree.
     #[inline(always)]
-    fn trace<S: Simd, G: Geometry, R: Source, K: Kind, const FAST: bool>(
+    fn trace<S: Simd, R: Source, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
-        piece: &Piece<'_, G, R>,
+        piece: &Piece<'_, R>,
         stack: &mut [Item],
     ) {
         if piece.tree.root == Reference::NOTHING {
@@ -271,7 +271,7 @@ impl Packet {
                     let groups = groups & self.groups.reaching::<S, K>(simd, &self.frame, near);
                     leaves[1] = Leaf { reference, groups };
                 }
-                self.visit_leaves::<S, G, R, K, FAST>(simd, piece, leaves);
+                self.visit_leaves::<S, R, K, FAST>(simd, piece, leaves);
             } else {
                 top +=
                     self.enter_node::<S, K>(simd, piece.tree, reference, groups, &mut stack[top..]);
@@ -337,10 +337,10 @@ impl Packet {
 
     /// Tests the primitives of two leaves against the rays of some groups each.
     #[inline(always)]
-    fn visit_leaves<S: Simd, G: Geometry, R: Source, K: Kind, const FAST: bool>(
+    fn visit_leaves<S: Simd, R: Source, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
-        piece: &Piece<'_, G, R>,
+        piece: &Piece<'_, R>,
         leaves: [Leaf; 2],
     ) {
         let [first, second] = leaves;
@@ -382,7 +382,7 @@ impl Packet {
             touched |= u32::from(hit | doubtful != 0) << group;
             if doubtful != 0 {
                 let leaf = leaves[lane / LANES].reference;
-                self.settle::<G, R, K>(piece, leaf, lane % LANES, group, doubtful);
+                self.settle::<R, K>(piece, leaf, lane % LANES, group, doubtful);
             }
         }
         let mut left = if FAST { others } else { others | triangles.possible & triangles.unknown };
@@ -401,7 +401,7 @@ impl Packet {
                 }
                 if members != 0 {
                     touched |= 1 << group;
-                    self.settle::<G, R, K>(piece, reference, lane % LANES, group, members);
+                    self.settle::<R, K>(piece, reference, lane % LANES, group, members);
                 }
             }
         }
