@@ -21,7 +21,7 @@ pub(super) fn build<G: Geometry>(
         return Ok(Bvh2::from_parts(Vec::new(), Vec::new()));
     }
     let builder = Lbvh { geometry, bits, max_leaf_size: options.clamped().max_leaf_size };
-    let nodes = builder.grow(Stretch::all(&mut keys, bits, growing))?.into_nodes(copying)?;
+    let nodes = builder.grow(Stretch::all(&mut keys, bits), growing)?.into_nodes(copying)?;
     let number = |place: usize| bits.number(keys[place]);
     let indices = parallel::map_watched(n, work.without_progress(), number)?;
     Ok(Bvh2::from_parts(nodes, indices))
@@ -39,20 +39,22 @@ struct Lbvh<'a, G> {
 
 impl<G: Geometry> Lbvh<'_, G> {
     /// Builds a subtree, in parallel if it is large.
-    fn grow(&self, mut stretch: Stretch<'_>) -> Result<Subtree, Cancelled> {
-        let (count, work) = (stretch.len(), stretch.work());
+    fn grow(&self, mut stretch: Stretch<'_>, work: Work<'_>) -> Result<Subtree, Cancelled> {
+        let count = stretch.len();
         work.check()?;
         if count <= PARALLEL_SUBTREES || count <= self.max_leaf_size {
             let mut nodes = Vec::with_capacity(count);
             nodes.push(UNKNOWN);
-            self.subdivide(stretch.unwatched(), 0, &mut nodes);
+            self.subdivide(stretch.reborrowed(), 0, &mut nodes);
             self.measure(&mut nodes, stretch.keys(), stretch.first());
             work.done()?;
             return Ok(Subtree::Piece(nodes));
         }
-        let (left, right) = stretch.split(self.geometry);
+        let (left, right) = stretch.split(self.geometry, work);
         work.check()?;
-        let (left, right) = parallel::join_if(true, || self.grow(left), || self.grow(right));
+        let [left_work, right_work] = work.shares([left.len() as f64, right.len() as f64]);
+        let (left, right) =
+            parallel::join_if(true, || self.grow(left, left_work), || self.grow(right, right_work));
         let children = [left?, right?];
         let bounds = children[0].bounds().union(children[1].bounds());
         Ok(Subtree::Pair(bounds, Box::new(children)))
@@ -65,7 +67,7 @@ impl<G: Geometry> Lbvh<'_, G> {
             nodes[place] = Node::leaf(Aabb::EMPTY, stretch.first() as u32, count as u32);
             return;
         }
-        let (left, right) = stretch.split(self.geometry);
+        let (left, right) = stretch.split(self.geometry, Work::UNWATCHED);
         let child = nodes.len();
         nodes[place] = Node::interior(Aabb::EMPTY, child as u32);
         nodes.extend_from_slice(&[UNKNOWN; 2]);

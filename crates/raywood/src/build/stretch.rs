@@ -15,10 +15,8 @@ pub(crate) struct Stretch<'a> {
     /// Where they start in the array of all.
     first: usize,
     /// The level of their node, from 1.
-    depth: usize,
+    depth: u32,
     order: Order,
-    /// What building their subtree is of the whole build.
-    work: Work<'a>,
 }
 
 /// How keys are sorted.
@@ -34,8 +32,8 @@ enum Order {
 
 impl<'a> Stretch<'a> {
     /// All primitives, sorted by the first bits of their codes at least.
-    pub(crate) fn all(keys: &'a mut [u64], bits: KeyBits, work: Work<'a>) -> Self {
-        Self { keys, bits, first: 0, depth: 1, order: Order::Coarse, work }
+    pub(crate) fn all(keys: &'a mut [u64], bits: KeyBits) -> Self {
+        Self { keys, bits, first: 0, depth: 1, order: Order::Coarse }
     }
 
     /// How many primitives there are.
@@ -54,25 +52,22 @@ impl<'a> Stretch<'a> {
         self.keys
     }
 
-    /// What building their subtree is of the whole build.
-    pub(crate) fn work(&self) -> Work<'a> {
-        self.work
-    }
-
-    /// The same primitives, of which nobody is told how far they are.
-    pub(crate) fn unwatched(&mut self) -> Stretch<'_> {
-        Stretch { keys: &mut *self.keys, work: Work::UNWATCHED, ..*self }
+    /// The same primitives, for a while.
+    pub(crate) fn reborrowed(&mut self) -> Stretch<'_> {
+        Stretch { keys: &mut *self.keys, ..*self }
     }
 
     /// Divides it where the highest bit changes in which codes differ; in the middle where the tree might else become too deep, or where no code can tell the
     /// primitives apart. There must be two of them.
-    pub(crate) fn split<G: Geometry>(self, geometry: &G) -> (Self, Self) {
-        let Self { keys, bits, first, depth, mut order, work } = self;
+    #[inline(always)]
+    pub(crate) fn split<G: Geometry>(self, geometry: &G, work: Work<'_>) -> (Self, Self) {
+        let Self { keys, bits, first, depth, mut order } = self;
         let count = keys.len();
-        let must_halve = must_halve(count, depth);
-        if !must_halve && order != Order::Alike {
+        let must_halve = must_halve(count, depth as usize);
+        let same = bits.same_coarse_code(keys[0], keys[count - 1]);
+        if same && !must_halve && order != Order::Alike {
             // Of a build that is stopped no order matters.
-            order = sort_if_alike(geometry, keys, bits, order, work).unwrap_or(order);
+            order = tell_apart(geometry, keys, bits, order, work).unwrap_or(order);
         }
         let left_count = match must_halve || order == Order::Alike {
             true => count / 2,
@@ -84,18 +79,18 @@ impl<'a> Stretch<'a> {
         };
         let (left, right) = keys.split_at_mut(left_count);
         let depth = depth + 1;
-        let [left_work, right_work] = work.shares([left.len() as f64, right.len() as f64]);
         (
-            Self { keys: left, bits, first, depth, order, work: left_work },
-            Self { keys: right, bits, first: first + left_count, depth, order, work: right_work },
+            Self { keys: left, bits, first, depth, order },
+            Self { keys: right, bits, first: first + left_count, depth, order },
         )
     }
 }
 
-/// Makes sure that the first and the last key have different codes, and are sorted as far as these tell: by the rest of their codes if what they are sorted by is the same, and by new
-/// codes if all of it is. Says how they are sorted then.
-#[inline(always)]
-fn sort_if_alike<G: Geometry>(
+/// Sorts keys of which the first 32 bits of the codes are the same by the others, if they are not yet, and if these are the same too, by codes of their own. Says how they are sorted
+/// then.
+#[cold]
+#[inline(never)]
+fn tell_apart<G: Geometry>(
     geometry: &G,
     keys: &mut [u64],
     bits: KeyBits,
@@ -103,7 +98,7 @@ fn sort_if_alike<G: Geometry>(
     work: Work<'_>,
 ) -> Result<Order, Cancelled> {
     let last = keys.len() - 1;
-    if order == Order::Coarse && bits.same_coarse_code(keys[0], keys[last]) {
+    if order == Order::Coarse {
         sort_slice_above(bits.below_code(), keys, work.without_progress())?;
         order = Order::Full;
     }

@@ -41,7 +41,7 @@ pub(super) fn build<G: Geometry>(
         return Ok(finish((Arena::default(), (Reference::NOTHING, 0))));
     }
     let planter = Planter { geometry, most: options.clamped().wide_leaf_size };
-    let mut tree = planter.grow(Stretch::all(&mut keys, bits, dividing))?;
+    let mut tree = planter.grow(Stretch::all(&mut keys, bits), dividing)?;
     let Sizes { blocks, nodes } = tree.sizes();
     // Now it is known about how large the tree becomes: scenes can be made in which that is more than was to be expected.
     let (block_lines, node_lines) = (BLOCK_LINES * blocks, NODE_LINES * nodes);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::Geometry;
-use crate::build::{Cancelled, PackedAabb, Stretch};
+use crate::build::{Cancelled, PackedAabb, Stretch, Work};
 use crate::geometry::LANES;
 use crate::parallel::join_if;
 use crate::structures::wide::division::Division;
@@ -70,8 +70,8 @@ pub(super) struct Planter<'a, G> {
 
 impl<G: Geometry> Planter<'_, G> {
     /// Divides a stretch, in which there is something. O(n), in parallel, the same for any number of threads.
-    pub(super) fn grow(&self, mut stretch: Stretch<'_>) -> Result<Tree, Cancelled> {
-        let (count, work) = (stretch.len(), stretch.work());
+    pub(super) fn grow(&self, mut stretch: Stretch<'_>, work: Work<'_>) -> Result<Tree, Cancelled> {
+        let count = stretch.len();
         work.check()?;
         if count <= PARALLEL {
             let end = (stretch.first() + count) as u32;
@@ -82,15 +82,17 @@ impl<G: Geometry> Planter<'_, G> {
                 root: Bough::Group { first: 0, count: 0 },
                 sizes: Sizes::default(),
             };
-            piece.root = self.divide(stretch.unwatched(), &mut piece);
+            piece.root = self.divide(stretch.reborrowed(), &mut piece);
             piece.starts.push(end);
             piece.measure();
             work.done()?;
             return Ok(Tree::Piece(piece));
         }
-        let (left, right) = stretch.split(self.geometry);
+        let (left, right) = stretch.split(self.geometry, work);
         work.check()?;
-        let (left, right) = join_if(true, || self.grow(left), || self.grow(right));
+        let [left_work, right_work] = work.shares([left.len() as f64, right.len() as f64]);
+        let (left, right) =
+            join_if(true, || self.grow(left, left_work), || self.grow(right, right_work));
         let children = [left?, right?];
         let [left, right] = [children[0].sizes(), children[1].sizes()];
         let sizes = Sizes { blocks: left.blocks + right.blocks, nodes: left.nodes + right.nodes };
@@ -103,7 +105,7 @@ impl<G: Geometry> Planter<'_, G> {
             piece.starts.push(stretch.first() as u32);
             return Bough::Group { first: piece.starts.len() as u32 - 1, count: 1 };
         }
-        let (left, right) = stretch.split(self.geometry);
+        let (left, right) = stretch.split(self.geometry, Work::UNWATCHED);
         let children = [self.divide(left, piece), self.divide(right, piece)];
         if let [Bough::Group { first, count: left }, Bough::Group { count: right, .. }] = children
             && (left + right) as usize <= MAX_GROUP
