@@ -206,7 +206,12 @@ fn wide(n: usize, options: &BuildOptions) -> PerPrimitive {
     let nodes = usual_nodes(builder, max_leaf_size);
     let structure = wide_structure(builder, max_leaf_size);
     let (tree, plan) = (NODE * nodes + NUMBER, 20.0 * nodes);
-    let peak = references * peak.max(tree + plan + structure);
+    let mut peak = references * peak.max(tree + plan + structure);
+    if references > 1.0 {
+        // With the tree of cut triangles there, one of whole ones is built.
+        let whole = BuildOptions { spatial_splits: 0.0, ..options };
+        peak = peak.max(references * (tree + plan) + binary(builder, n, &whole).peak);
+    }
     PerPrimitive { peak, structure: references * structure }
 }
 

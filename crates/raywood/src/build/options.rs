@@ -17,14 +17,16 @@ pub struct BuildOptions {
     /// for primitives that overlap, so structures that divide space stop where dividing no longer pays.
     pub max_leaf_size: usize,
     /// The most primitives a leaf of the binary tree may hold from which the wide tree is made, at least 1. The wide tree puts leaves together again, up to
-    /// eight primitives; from smaller ones come slightly better trees where reinsertion improves them, and that takes longer.
+    /// eight primitives. From smaller ones come no better trees: reinsertion then tears primitives apart that one leaf would hold at the cost of one.
     pub wide_leaf_size: usize,
     /// Who builds the binary tree from which the wide tree is made. With [`Builder::Lbvh`], no passes of reinsertion and nothing cut there is none: the wide tree is made
     /// from the order on the curve at once, in half of the time.
     pub wide_builder: Builder,
     /// By which share, 0 to 4, the wide tree may have more references than there are primitives because large triangles are cut where that pays (spatial splits: Stich,
     /// Friedrich and Dietrich 2009). Traces up to a tenth faster where large triangles lie among small ones, takes several times as long to build, and more memory. 0 cuts nothing.
-    /// Only triangles are cut. Above 0 the binary tree is built as by [`Builder::SahBinned`], whatever `wide_builder` says.
+    /// Only triangles are cut.
+    /// Above 0 the binary tree is built as by [`Builder::SahBinned`], whatever `wide_builder` says;
+    /// and another as if this were 0, for that is better in some scenes: the one of which rays are expected to visit fewer nodes is kept.
     pub spatial_splits: f32,
     /// The estimated cost of visiting a node (`C_aabb`).
     pub node_cost: f32,

@@ -42,11 +42,8 @@ pub(super) fn build<G: Geometry>(
     }
     let allowed = options;
     let options = binary_options(options);
-    let binary = Bvh2::cost_for_wide(&options);
-    let [building, planning, filling] = work.shares([binary, PLAN_COST, FILL_COST]);
-    let tree = Bvh2::build_for_wide(geometry, &options, building)?;
-    let parts = Parts::of(&tree, geometry.len());
-    let plan = Plan::new(&tree, &parts, planning)?;
+    let [drafting, filling] = work.shares([Draft::best_cost(&options), FILL_COST]);
+    let Draft { tree, parts, plan } = Draft::best(geometry, &options, drafting)?;
     let is_node = !tree.nodes().is_empty() && !plan.is_leaf(0);
     let lines = match tree.nodes() {
         [] => 0,
@@ -73,6 +70,54 @@ pub(super) fn build<G: Geometry>(
     });
     let filled = filled.ok_or(BuildError::Cancelled)?;
     Ok(finished(tree.bounds(), geometry.len(), &options, parts, filled))
+}
+
+/// A binary tree, and what is to be made of it.
+struct Draft {
+    tree: Bvh2,
+    parts: Parts,
+    plan: Plan,
+}
+
+impl Draft {
+    fn new<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        let [building, planning] = work.shares([Bvh2::cost_for_wide(options), PLAN_COST]);
+        let tree = Bvh2::build_for_wide(geometry, options, building)?;
+        let parts = Parts::of(&tree, geometry.len());
+        let plan = Plan::new(&tree, &parts, planning)?;
+        Ok(Self { tree, parts, plan })
+    }
+
+    /// One with triangles cut, if the options ask for that and it costs less than one without: reinsertion finds better trees of whole triangles in some scenes.
+    fn best<G: Geometry>(
+        geometry: &G,
+        options: &BuildOptions,
+        work: Work<'_>,
+    ) -> Result<Self, BuildError> {
+        if !options.cuts_triangles() {
+            return Self::new(geometry, options, work);
+        }
+        let whole = BuildOptions { spatial_splits: 0.0, ..options.clone() };
+        let costs = [options, &whole].map(|options| Bvh2::cost_for_wide(options) + PLAN_COST);
+        let [cutting, keeping_whole] = work.shares(costs);
+        let cut = Self::new(geometry, options, cutting)?;
+        let whole = Self::new(geometry, &whole, keeping_whole)?;
+        Ok(if cut.plan.cost() < whole.plan.cost() { cut } else { whole })
+    }
+
+    /// About how long the best takes.
+    fn best_cost(options: &BuildOptions) -> f64 {
+        let whole = BuildOptions { spatial_splits: 0.0, ..options.clone() };
+        let cost = Bvh2::cost_for_wide(options) + PLAN_COST;
+        match options.cuts_triangles() {
+            true => cost + Bvh2::cost_for_wide(&whole) + PLAN_COST,
+            false => cost,
+        }
+    }
 }
 
 /// The tree of lines that were filled, with its root and how many nodes lie on the longest way from there.

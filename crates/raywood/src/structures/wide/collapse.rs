@@ -42,6 +42,8 @@ pub(super) fn primitives(tree: &Bvh2, number: usize) -> &[u32] {
 /// What is best for each node of a binary tree.
 pub(super) struct Plan {
     choices: Vec<Choice>,
+    /// What the whole tree costs: visits to nodes and leaves of a ray that meets the box around everything.
+    cost: f32,
     /// How many cache lines everything below the wide node takes that a node becomes, if it becomes one.
     lines_below: Vec<AtomicU32>,
 }
@@ -69,13 +71,14 @@ impl Plan {
     pub(super) fn new(tree: &Bvh2, parts: &Parts, work: Work<'_>) -> Result<Self, Cancelled> {
         let [making_room, searching, counting] = work.shares([1.0, 10.0, 1.0]);
         let mut choices = making_room.copies(Choice::NONE, tree.nodes().len())?;
+        let mut cost = 0.0;
         if let Some((root, below)) = choices.split_first_mut() {
             let root_area = tree.bounds().half_area();
-            Search { tree, root_area, work: searching }.best(0, root, below);
+            cost = Search { tree, root_area, work: searching }.best(0, root, below).trees.costs[0];
         }
         work.check()?;
         let lines_below = tree.nodes().iter().map(|_| AtomicU32::new(0)).collect();
-        let plan = Self { choices, lines_below };
+        let plan = Self { choices, cost, lines_below };
         if !tree.nodes().is_empty() && !plan.is_leaf(0) {
             let counter = LineCounter { plan: &plan, tree, parts, work: counting };
             counter.count(0, true);
@@ -93,6 +96,11 @@ impl Plan {
             }
         }
         Sharing::of(&counts)
+    }
+
+    /// What the whole tree costs by the surface area heuristic: visits to nodes and leaves of a ray that meets the box around everything.
+    pub(super) fn cost(&self) -> f32 {
+        self.cost
     }
 
     /// How much memory it takes.
