@@ -136,3 +136,59 @@ fn encode_anew<G: Geometry>(
         false => Ok(Order::Full),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::{Precision, SortedKeys, sorted_keys};
+    use crate::{Spheres, Vec3};
+
+    /// How often halves have been told apart by the rest of their codes, or by new ones, and not at all.
+    #[derive(Default)]
+    struct Told {
+        by_rest: usize,
+        not: usize,
+    }
+
+    /// Divides everything down to single primitives. What lies left must come first along the curve.
+    fn divide(geometry: &Spheres, stretch: Stretch<'_>, told: &mut Told) {
+        if stretch.len() < 2 {
+            return;
+        }
+        let before = stretch.order;
+        let (left, right) = stretch.split(geometry, Work::UNWATCHED);
+        let last_left = left.keys.iter().max().expect("something lies left");
+        let first_right = right.keys.iter().min().expect("something lies right");
+        assert!(last_left < first_right);
+        told.by_rest += usize::from(before == Order::Coarse && left.order == Order::Full);
+        told.not += usize::from(before != Order::Alike && left.order == Order::Alike);
+        divide(geometry, left, told);
+        divide(geometry, right, told);
+    }
+
+    #[test]
+    fn crowds_are_divided_in_order() {
+        // Cells of the first 32 bits are about a thousandth of the scene long, and those of all bits a hundredth of that.
+        let mut state = 3u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let mut spheres = vec![(Vec3::ZERO, 0.1), (Vec3::splat(1.0), 0.1)];
+        for (size, count) in [(1e-3, 3000), (1e-5, 500), (1e-7, 200), (0.0, 100)] {
+            let corner = Vec3::new(random(), random(), random());
+            let mut point = || corner + size * Vec3::new(random(), random(), random());
+            spheres.extend((0..count).map(|_| (point(), 1e-4)));
+        }
+        let spheres = Spheres::new(spheres).expect("finite spheres");
+        let sorted = sorted_keys(&spheres, Precision::Coarse, Work::UNWATCHED);
+        let SortedKeys { mut keys, bits, .. } =
+            sorted.unwrap_or_else(|_| panic!("nobody stops it"));
+        let mut told = Told::default();
+        divide(&spheres, Stretch::all(&mut keys, bits), &mut told);
+        assert!(told.by_rest > 10 && told.not > 0, "{} {}", told.by_rest, told.not);
+        let mut numbers: Vec<_> = keys.iter().map(|&key| bits.number(key)).collect();
+        numbers.sort_unstable();
+        assert!(numbers.into_iter().eq(0..keys.len() as u32));
+    }
+}

@@ -1,6 +1,6 @@
 //! Every level against scalar arithmetic, to the bit.
 
-use super::{Float, Kernel, Simd, SimdLevel, dispatch_on};
+use super::{BitPlaces, Float, Kernel, Simd, SimdLevel, dispatch_on};
 
 /// Numbers that tell operations apart: zeros of both signs, infinities, NaN, subnormal and usual ones.
 const NUMBERS: [f32; 16] = [
@@ -344,6 +344,55 @@ fn columns_are_rows_turned() {
         for (column, numbers) in dispatch_on(level, Columns(rows)).into_iter().enumerate() {
             let expected: Vec<f32> = rows.iter().map(|row| row[column]).collect();
             assert_eq!(numbers, expected, "{}, column {column}", level.name());
+        }
+    }
+}
+
+/// The whole parts of sixteen numbers, and their bits in other places.
+struct Whole<'a>([f32; 16], &'a BitPlaces);
+
+impl Kernel for Whole<'_> {
+    type Output = ([u32; 16], [u64; 16]);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let whole = simd.whole_numbers(simd.load16(&self.0));
+        (whole, whole.map(|number| simd.spread_bits(number, self.1)))
+    }
+}
+
+#[test]
+fn bits_of_whole_parts_go_where_the_mask_has_bits() {
+    let mut state = 9u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        state >> 20
+    };
+    for round in 0..200 {
+        // At most sixteen places, in the end none.
+        let mut mask = random() << 20 | random();
+        while mask.count_ones() > 16_u32.saturating_sub(round / 10) {
+            mask &= mask - 1;
+        }
+        let places = BitPlaces::new(mask);
+        let numbers: [f32; 16] = std::array::from_fn(|lane| match lane {
+            0 => 0.0,
+            1 => 65535.0,
+            2 => 0.999_999_9,
+            _ => (random() % (1 << 22)) as f32 / 64.0,
+        });
+        for level in levels() {
+            let (whole, spread) = dispatch_on(level, Whole(numbers, &places));
+            for lane in 0..16 {
+                let expected = numbers[lane].floor() as u32;
+                assert_eq!(whole[lane], expected, "{}, {numbers:?}", level.name());
+                let (mut left, mut bits) = (mask, 0);
+                for bit in 0..mask.count_ones() {
+                    bits |= u64::from(expected >> bit & 1) << left.trailing_zeros();
+                    left &= left - 1;
+                }
+                assert_eq!(spread[lane], bits, "{}, {mask:x} {expected}", level.name());
+            }
         }
     }
 }

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use raywood::{
-    Aabb, Ball, BuildOptions, Bvh, Hit, Joined, Ray, SimdLevel, Spheres, Structure, StructureKind,
-    TriangleMesh, Vec3, WideBvh,
+    Aabb, Ball, BuildOptions, BuildPreset, Bvh, Hit, Joined, Ray, SimdLevel, Spheres, Structure,
+    StructureKind, TriangleMesh, Vec3, WideBvh,
 };
 use raywood_testkit::{Rng, nasty, oracle, points, rays, shapes};
 
@@ -65,6 +65,25 @@ fn cuttable() -> Vec<(&'static str, TriangleMesh)> {
         ("large beams", beams(Vec3::ZERO, 1e9)),
         ("a room", room()),
     ]
+}
+
+#[test]
+fn triangles_stay_whole_where_such_trees_are_better() {
+    // Reinsertion has the more to gain the more boxes overlap, which those of parts do not.
+    let improved = BuildPreset::Best.options();
+    let mesh = shapes::soup(200, 0.5, 1);
+    for (passes, is_cut) in [(0, true), (20, false)] {
+        let options = BuildOptions {
+            spatial_splits: 4.0,
+            reinsertion_passes: Some(passes),
+            ..improved.clone()
+        };
+        let bvh = Bvh::build_with(&mesh, &options).expect("it builds");
+        bvh.validate().expect("it is sound");
+        assert_eq!(bvh.stats().duplication() > 1.0, is_cut, "{passes} passes");
+    }
+    let cut = Bvh::build_with(room(), &improved).expect("it builds");
+    assert!(cut.stats().duplication() > 1.0);
 }
 
 /// Rays that look for trouble: from the usual places, from far away, at edges and along triangles.

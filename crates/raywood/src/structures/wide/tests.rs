@@ -81,13 +81,11 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
             let (geometry, tree) = (&things, &tree);
             for (ray, expected) in rays.iter().zip(&expected) {
                 let probe = &mut Counts::default();
-                let hit = dispatch_on(
-                    level,
-                    single::Closest::<_, _, false> { tree, geometry, ray, probe },
-                );
+                let hit =
+                    dispatch_on(level, single::Closest::<_, false> { tree, geometry, ray, probe });
                 assert_eq!(hit, *expected, "{what}: {ray:?}");
                 let blocked =
-                    dispatch_on(level, single::Any::<_, _, false> { tree, geometry, ray, probe });
+                    dispatch_on(level, single::Any::<_, false> { tree, geometry, ray, probe });
                 assert_eq!(blocked, expected.is_some(), "{what}: {ray:?}");
             }
             for size in [0, 1, 2, 63, 64, 65, 1000] {
@@ -97,11 +95,11 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
                 let hits = &mut vec![Some(nonsense); size][..];
                 dispatch_on(
                     level,
-                    batch::Closest::<_, _, _, false> { tree, geometry, rays, hits: &mut *hits },
+                    batch::Closest::<_, _, false> { tree, geometry, rays, hits: &mut *hits },
                 );
                 assert!(*hits == expected[..size], "{what}: a batch of {size}");
                 let occluded = &mut vec![true; size][..];
-                dispatch_on(level, batch::Any::<_, _, false> { tree, geometry, rays, occluded });
+                dispatch_on(level, batch::Any::<_, false> { tree, geometry, rays, occluded });
                 let right = occluded.iter().zip(&expected).all(|(o, hit)| *o == hit.is_some());
                 assert!(right, "{what}: a batch of {size} for any hit");
             }
@@ -119,17 +117,14 @@ fn fast_tests_find_nearly_the_same() {
     for &level in SimdLevel::ALL.iter().filter(|level| level.is_available()) {
         let geometry = &things;
         let hits = &mut vec![None; rays.len()][..];
-        dispatch_on(
-            level,
-            batch::Closest::<_, _, _, true> { tree, geometry, rays, hits: &mut *hits },
-        );
+        dispatch_on(level, batch::Closest::<_, _, true> { tree, geometry, rays, hits: &mut *hits });
         let occluded = &mut vec![false; rays.len()][..];
-        dispatch_on(level, batch::Any::<_, _, true> { tree, geometry, rays, occluded });
+        dispatch_on(level, batch::Any::<_, true> { tree, geometry, rays, occluded });
         let mut different = 0;
         for ((ray, hit), occluded) in rays.iter().zip(&*hits).zip(&*occluded) {
             let probe = &mut ();
             let alone =
-                dispatch_on(level, single::Closest::<_, _, true> { tree, geometry, ray, probe });
+                dispatch_on(level, single::Closest::<_, true> { tree, geometry, ray, probe });
             let near = |a: Option<Hit>, b: Option<Hit>| match (a, b) {
                 (Some(a), Some(b)) => (a.t - b.t).abs() <= 1e-4 * a.t.abs(),
                 (a, b) => a.is_none() && b.is_none(),
