@@ -81,6 +81,20 @@ pub fn mapped(original: &TriangleMesh, mut map: impl FnMut(Vec3) -> Vec3) -> Tri
     mesh(original.positions().iter().map(|&p| map(p)).collect(), original.triangles().to_vec())
 }
 
+/// Small random triangles, and beams that run through all of them askew: trees that may cut triangles cut some.
+pub fn beams(small: usize, beams: usize) -> TriangleMesh {
+    let mut rng = crate::Rng::new(5);
+    let small = soup(small, 0.05, 9);
+    let mut positions = small.positions().to_vec();
+    for _ in 0..beams {
+        let (from, to) = (1.2 * rng.in_cube(), 1.2 * rng.in_cube());
+        positions.extend([from, to, to + 0.02 * rng.in_cube()]);
+    }
+    let first = small.positions().len() as u32;
+    let beams = (0..beams as u32).map(|i| [first + 3 * i, first + 3 * i + 1, first + 3 * i + 2]);
+    mesh(positions, small.triangles().iter().copied().chain(beams).collect())
+}
+
 /// Random triangles of edge length about `size` in the cube from -1 to 1.
 pub fn soup(count: usize, size: f32, seed: u64) -> TriangleMesh {
     let mut rng = crate::Rng::new(seed);

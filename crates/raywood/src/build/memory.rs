@@ -175,7 +175,7 @@ fn binary(builder: Builder, n: usize, options: &BuildOptions) -> PerPrimitive {
     let building = building + (growing + boxes) * (in_pieces / n as f64).min(1.0);
 
     let share = f64::from(options.reinsertion_share);
-    let improving = match options.reinsertion_passes.unwrap_or(0) {
+    let improving = match options.reinsertion_passes.unwrap_or(0) + options.rotation_passes {
         0 => 0.0,
         _ => {
             // Parents of pairs, heights, and in turn: areas; candidates and moves; the copy.

@@ -32,12 +32,15 @@ pub struct BuildOptions {
     pub node_cost: f32,
     /// The estimated cost of testing a primitive (`C_tri`), in the same unit.
     pub primitive_cost: f32,
+    /// How many passes at most improve a bounding volume hierarchy after it is built, before reinsertion, by having subtrees near a node change places (rotations: Kensler 2008).
+    /// A pass gains less than one of reinsertion that takes as long.
+    pub rotation_passes: usize,
     /// How many passes at most improve a bounding volume hierarchy after it is built, by moving subtrees to where they cost less. `None` leaves it to the structure: four for scenes of instances, whose boxes overlap, none for all other trees.
     pub reinsertion_passes: Option<usize>,
     /// Which share of the nodes a pass of reinsertion tries to move, 0 to 1: the largest ones, which matter most. More gain a little more and take
     /// longer in proportion.
     pub reinsertion_share: f32,
-    /// The least share, 0 to 1, by which a pass must lower the cost of the whole tree for another one to follow.
+    /// The least share, 0 to 1, by which a pass of rotations or reinsertion must lower the cost of the whole tree for another one to follow.
     pub reinsertion_gain: f32,
     /// About how many cells a grid has for each primitive, 0.01 to 100. More cells make shorter lists, longer walks and more memory.
     pub grid_density: f32,
@@ -75,6 +78,7 @@ impl Default for BuildOptions {
             spatial_splits: 0.0,
             node_cost: 1.0,
             primitive_cost: 1.0,
+            rotation_passes: 0,
             reinsertion_passes: None,
             reinsertion_share: 0.05,
             reinsertion_gain: 0.005,
@@ -106,6 +110,7 @@ impl BuildOptions {
             },
             node_cost: cost(self.node_cost),
             primitive_cost: cost(self.primitive_cost),
+            rotation_passes: self.rotation_passes.min(64),
             reinsertion_passes: self.reinsertion_passes,
             reinsertion_share: share(self.reinsertion_share),
             reinsertion_gain: share(self.reinsertion_gain),

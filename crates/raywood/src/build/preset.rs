@@ -9,7 +9,7 @@ use super::{BuildOptions, Builder};
 pub enum BuildPreset {
     /// The wide tree straight from the order along a space-filling curve: for scenes that change with every picture.
     Fastest,
-    /// From a binary tree along the curve, the largest nodes improved in two passes.
+    /// From a binary tree along the curve, all nodes improved by rotations and the largest by reinsertion.
     Fast,
     /// The default: neighbours merged from the bottom up.
     #[default]
@@ -43,13 +43,13 @@ impl BuildPreset {
 
     /// What it chooses. `balanced` is [`BuildOptions::default`]; each of the others differs from it as told here, and all else may be changed:
     ///
-    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `reinsertion_passes` | `reinsertion_share` | `reinsertion_gain` | `spatial_splits` |
-    /// | --- | --- | ---: | ---: | --- | ---: | ---: | ---: |
-    /// | `fastest` | `Lbvh` | 8 | | none | | | |
-    /// | `fast` | `Lbvh` | 8 | | up to 2 | 0.05 | 0.005 | |
-    /// | `balanced` | `Ploc` | 8 | | none; up to 4 for scenes of instances | 0.05 | 0.005 | |
-    /// | `high` | `Ploc` | 8 | | up to 6 | 0.05 | 0.005 | |
-    /// | `best` | `SahBinned` | 8 | 32 | up to 20 | 0.3 | 0.001 | 0.3 |
+    /// | preset | `wide_builder` | `wide_leaf_size` | `bins` | `rotation_passes` | `reinsertion_passes` | `reinsertion_share` | `reinsertion_gain` | `spatial_splits` |
+    /// | --- | --- | ---: | ---: | ---: | --- | ---: | ---: | ---: |
+    /// | `fastest` | `Lbvh` | 8 | | | none | | | |
+    /// | `fast` | `Lbvh` | 8 | | 1 | up to 2 | 0.05 | 0.005 | |
+    /// | `balanced` | `Ploc` | 8 | | | none; up to 4 for scenes of instances | 0.05 | 0.005 | |
+    /// | `high` | `Ploc` | 8 | | | up to 6 | 0.05 | 0.005 | |
+    /// | `best` | `SahBinned` | 8 | 32 | | up to 20 | 0.3 | 0.001 | 0.3 |
     pub fn options(self) -> BuildOptions {
         let balanced = BuildOptions::default();
         match self {
@@ -60,6 +60,7 @@ impl BuildPreset {
             },
             Self::Fast => BuildOptions {
                 wide_builder: Builder::Lbvh,
+                rotation_passes: 1,
                 reinsertion_passes: Some(2),
                 ..balanced
             },

@@ -10,13 +10,8 @@ use raywood_testkit::{Rng, shapes};
 
 /// A tree over some triangles, with parts.
 fn honest() -> Forgery {
-    let mesh = shapes::soup(200, 0.5, 1);
-    // Reinsertion would find a better tree of whole triangles.
-    let options = BuildOptions {
-        spatial_splits: 4.0,
-        reinsertion_passes: Some(0),
-        ..BuildPreset::Best.options()
-    };
+    let mesh = shapes::beams(160, 40);
+    let options = BuildOptions { spatial_splits: 4.0, ..BuildPreset::Best.options() };
     let mut file = Vec::new();
     Bvh::build_with(mesh, &options).expect("it builds").save(&mut file).expect("it is saved");
     let forgery = Forgery::of(&file);

@@ -104,6 +104,11 @@ impl LinkedTree {
         ((node - 1) ^ 1) + 1
     }
 
+    /// How many levels lie below a node.
+    pub(super) fn height(&self, node: usize) -> usize {
+        usize::from(self.heights[node])
+    }
+
     /// The half areas of all interior nodes' boxes together: the part of the tree's cost that moving subtrees changes.
     pub(super) fn cost(&self) -> f64 {
         let interior = self.nodes.iter().filter(|node| !node.is_leaf());
@@ -148,6 +153,14 @@ impl LinkedTree {
         growth += self.refit_above(parent);
         growth += self.refit_above(to);
         growth
+    }
+
+    /// Has the subtrees of two nodes change places, neither of which lies in the other, and returns by how much the [`cost`](Self::cost) grows.
+    pub(super) fn swap(&mut self, a: usize, b: usize) -> f64 {
+        let (node, height) = (self.nodes[a], self.heights[a]);
+        self.put(a, self.nodes[b], self.heights[b]);
+        self.put(b, node, height);
+        self.refit_above(a) + self.refit_above(b)
     }
 
     /// Puts a node with all that is below it at a place in the pool.

@@ -3,6 +3,7 @@
 //! Optimization", 2018.
 
 mod linked_tree;
+mod rotations;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -12,6 +13,7 @@ use super::{Cancelled, Work};
 use crate::structures::Bvh2;
 use crate::{BuildOptions, parallel};
 use linked_tree::LinkedTree;
+use rotations::rotate;
 use search::{Move, best_move};
 
 /// About how many passes gain anything worth while.
@@ -22,6 +24,9 @@ const LINKING: f64 = 1.0;
 
 /// About how long it takes to copy the nodes in the end.
 const COPYING: f64 = 4.0;
+
+/// About how long a pass of rotations takes.
+const ROTATING: f64 = 6.0;
 
 /// About how long it takes to choose the nodes that a pass tries to move.
 const CHOOSING: f64 = 1.0;
@@ -44,19 +49,28 @@ pub(super) fn optimize(
     options: &BuildOptions,
     work: Work<'_>,
 ) -> Result<Bvh2, Cancelled> {
-    let BuildOptions { reinsertion_passes, reinsertion_share, reinsertion_gain, .. } =
-        options.clamped();
-    let passes = reinsertion_passes.unwrap_or(0);
+    let options = options.clamped();
+    let BuildOptions { reinsertion_share, reinsertion_gain, rotation_passes: rotations, .. } =
+        options;
+    let passes = options.reinsertion_passes.unwrap_or(0);
     // Boxes without area cost nothing wherever they are; two leaves can lie in one way only.
-    if passes == 0 || tree.nodes().len() <= 3 || tree.bounds().half_area() <= 0.0 {
+    if passes + rotations == 0 || tree.nodes().len() <= 3 || tree.bounds().half_area() <= 0.0 {
         work.done()?;
         return Ok(tree);
     }
     // Next to nothing is left to gain after the first few passes, however many are allowed.
     let search = pass_cost(reinsertion_share) * passes.min(USUAL_PASSES) as f64;
-    let [linking, search, copying] = work.shares([LINKING, search, COPYING]);
+    let rotating = ROTATING * rotations as f64;
+    let [linking, rotating, search, copying] = work.shares([LINKING, rotating, search, COPYING]);
     let mut tree = LinkedTree::new(tree, linking)?;
     let mut cost = tree.cost();
+    for _ in 0..rotations {
+        let gain = rotate(&mut tree, rotating.part(1, rotations))?;
+        cost -= gain;
+        if gain <= f64::from(reinsertion_gain) * cost {
+            break;
+        }
+    }
     for number in 0..passes {
         let share = match number < USUAL_PASSES {
             true => search.part(1, passes.min(USUAL_PASSES)),
@@ -73,11 +87,14 @@ pub(super) fn optimize(
 
 /// About how long it takes to improve a tree as the options say, in units in which linking its nodes takes one.
 pub(super) fn cost(options: &BuildOptions) -> f64 {
-    let BuildOptions { reinsertion_passes, reinsertion_share, .. } = options.clamped();
-    match reinsertion_passes.unwrap_or(0) {
+    let BuildOptions { reinsertion_passes, reinsertion_share, rotation_passes, .. } =
+        options.clamped();
+    let (passes, rotations) = (reinsertion_passes.unwrap_or(0), rotation_passes);
+    match passes + rotations {
         0 => 0.0,
-        passes => {
-            LINKING + COPYING + pass_cost(reinsertion_share) * passes.min(USUAL_PASSES) as f64
+        _ => {
+            let searching = pass_cost(reinsertion_share) * passes.min(USUAL_PASSES) as f64;
+            LINKING + ROTATING * rotations as f64 + searching + COPYING
         }
     }
 }

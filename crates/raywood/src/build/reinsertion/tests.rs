@@ -1,6 +1,7 @@
 //! Moves and the search for them, against the definition of the cost and against trying every place.
 
 use super::linked_tree::LinkedTree;
+use super::rotations::{best_rotation, rotate};
 use super::search::best_move;
 use crate::build::Work;
 use crate::{BuildOptions, Bvh2, Spheres, Vec3};
@@ -64,6 +65,57 @@ fn the_search_finds_the_best_of_all_places() {
             }
         }
     }
+}
+
+#[test]
+fn the_best_rotation_is_the_best_of_all_that_there_are() {
+    for seed in 0..40 {
+        let (spheres, tree) = tree(20, seed);
+        for node in 0..tree.len() {
+            // All pairs of subtrees one or two levels below the node, on different sides of it, but both children.
+            let Some(left) = tree.left_child(node) else {
+                assert_eq!(best_rotation(&tree, node), None);
+                continue;
+            };
+            let below = |child| tree.left_child(child).into_iter().flat_map(|g| [g, g + 1]);
+            let (mut best, mut pairs) = (0.0_f64, 0);
+            for a in below(left).chain([left]) {
+                for b in below(left + 1).chain([left + 1]) {
+                    if (a, b) != (left, left + 1) {
+                        best = best.max(-tree.clone().swap(a, b));
+                        pairs += 1;
+                    }
+                }
+            }
+            assert!(pairs <= 8);
+            let Some(found) = best_rotation(&tree, node) else {
+                assert_near(best, 0.0);
+                continue;
+            };
+            assert_near(found.gain, best);
+            let (mut rotated, [a, b]) = (tree.clone(), found.places);
+            assert_near(rotated.swap(a, b), -best);
+            assert_near(rotated.cost(), tree.cost() - best);
+            let bvh = rotated.clone().into_bvh2(Work::UNWATCHED).expect("nobody stops it");
+            assert_eq!(bvh.check(&spheres), Ok(()));
+            rotated.swap(a, b);
+            assert!(rotated == tree, "{a} and {b} and back");
+        }
+    }
+}
+
+#[test]
+fn passes_of_rotations_gain_what_they_say() {
+    let (spheres, mut tree) = tree(500, 8);
+    let first = tree.cost();
+    let mut cost = first;
+    for _ in 0..20 {
+        cost -= rotate(&mut tree, Work::UNWATCHED).expect("nobody stops it");
+        assert!((tree.cost() - cost).abs() <= 1e-9 * cost);
+    }
+    assert!(cost < 0.9 * first, "{cost} of {first}");
+    let bvh = tree.into_bvh2(Work::UNWATCHED).expect("nobody stops it");
+    assert_eq!(bvh.check(&spheres), Ok(()));
 }
 
 #[test]

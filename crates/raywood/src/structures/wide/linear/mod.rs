@@ -23,6 +23,7 @@ use tree::{Planter, Sizes};
 pub(crate) fn is_asked_for(options: &BuildOptions) -> bool {
     options.wide_builder == Builder::Lbvh
         && options.reinsertion_passes.unwrap_or(0) == 0
+        && options.rotation_passes == 0
         && !options.cuts_triangles()
 }
 
