@@ -28,6 +28,18 @@ impl Axes {
         Self { across, up, along: across.cross(up) }
     }
 
+    /// A vector given by its parts across, along and up.
+    #[inline]
+    pub fn to_world(&self, v: Vec3) -> Vec3 {
+        v.x * self.across + v.y * self.along + v.z * self.up
+    }
+
+    /// The parts of a vector across, along and up.
+    #[inline]
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.across), v.dot(self.along), v.dot(self.up))
+    }
+
     /// How far a box reaches along a direction of unit length.
     pub fn reach(bounds: &Aabb, direction: Vec3) -> f32 {
         bounds.extent().dot(direction.abs())

@@ -4,6 +4,7 @@ mod axes;
 pub mod builtin;
 mod camera;
 mod color;
+mod environment;
 mod error;
 pub mod formats;
 mod framing;
@@ -24,6 +25,7 @@ pub use axes::Axes;
 pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
+pub use environment::{Environment, load_environment};
 pub use error::{LoadError, Place};
 pub use framing::{
     Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,

@@ -40,6 +40,6 @@ pub enum LightKind {
         /// Where the light goes, unit length.
         direction: Vec3,
     },
-    /// Reaches every surface from all sides alike, without shadow.
+    /// Reaches every surface from all sides alike, without shadow. A path tracer has the surroundings and other surfaces in its place.
     Ambient,
 }

@@ -34,7 +34,8 @@ pub struct Material {
     pub ior: f32,
     /// Light absorbed inside, per channel and unit of length (Beer and Lambert): `exp(-absorption * length)` is left.
     pub absorption: Vec3,
-    /// Light that the surface sends out by itself, towards the eye only: it does not light other surfaces.
+    /// Light that the surface sends out by itself, on both sides, as bright from everywhere. With Whitted's method the eye alone sees it; with a path tracer it lights other
+    /// surfaces: white ones all around which it is 1 are 1.
     pub emission: Rgb,
     /// What it is made of, where a file says so in these terms: diffuse light, highlight, mirror and transmission follow from it, point by point
     /// where textures modulate it.
