@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
-use raywood_render::HeatQuantity;
+use raywood_render::{HeatQuantity, INTEGRATORS, Integrator};
 
 /// A point or direction, `X,Y,Z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +83,40 @@ pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
         let names: Vec<_> = StructureKind::ALL.iter().map(|kind| kind.name()).collect();
         format!("expected one of {}", names.join(", "))
     })
+}
+
+/// The name of a method of rendering.
+pub(crate) fn integrator(text: &str) -> Result<&'static Integrator, String> {
+    Integrator::by_name(text).ok_or_else(|| {
+        let names: Vec<_> = INTEGRATORS.iter().map(|integrator| integrator.name).collect();
+        let meant = names.iter().min_by_key(|name| edit_distance(text, name));
+        let meant = meant.filter(|name| edit_distance(text, name) <= name.len() / 2);
+        let question = meant.map_or(String::new(), |name| format!("did you mean {name}? "));
+        format!("{question}expected one of {}", names.join(", "))
+    })
+}
+
+/// How many letters must be put in, left out or changed to make one word the other (Levenshtein 1966).
+fn edit_distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut distances: Vec<usize> = (0..=to.len()).collect();
+    for (row, letter) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut distances[0], row + 1);
+        for (column, other) in to.iter().enumerate() {
+            let changed = diagonal + usize::from(letter != *other);
+            diagonal = distances[column + 1];
+            distances[column + 1] = changed.min(diagonal + 1).min(distances[column] + 1);
+        }
+    }
+    distances[to.len()]
+}
+
+/// An exposure in stops, as the factor that it means.
+pub(crate) fn exposure(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(stops) if (-32.0..=32.0).contains(&stops) => Ok(stops.exp2()),
+        _ => Err("expected stops from -32 to 32: each doubles the light".to_owned()),
+    }
 }
 
 /// The name of a preset of builds.
@@ -183,6 +217,16 @@ mod tests {
             let said = memory_size(bad).expect_err("no size");
             assert!(said.starts_with("expected a number of bytes"), "{bad}: {said}");
         }
+        assert_eq!((exposure("-1"), exposure("0"), exposure("2.0")), (Ok(0.5), Ok(1.0), Ok(4.0)));
+        assert!(["", "bright", "nan", "inf", "99"].iter().all(|bad| exposure(bad).is_err()));
+        assert_eq!(integrator("depth").map(|i| i.name), Ok("depth"));
+        for (wrong, right) in [("normal", "normals"), ("witted", "whitted"), ("Depth", "depth")] {
+            let said = integrator(wrong).expect_err("no such integrator");
+            assert!(said.starts_with(&format!("did you mean {right}? ")), "{said}");
+        }
+        let said = integrator("photon-mapping").expect_err("no such integrator");
+        assert!(said.starts_with("expected one of whitted, "), "{said}");
+        assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(heat_quantity("tests"), Ok(HeatQuantity::Tests));
         let said = heat_quantity("time").expect_err("no such quantity");
         assert_eq!(said, "expected one of nodes, boxes, primitives, tests");

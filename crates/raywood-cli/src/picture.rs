@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 use raywood_render::{
     BoundsOverlay, HeatMap, HeatQuantity, Image, PreparedScene, Progress, RayCounts, RenderError,
-    RenderOptions, RenderStats, RgbImage, View, bounds_overlay, heat_map, render, write_png,
+    RenderOptions, RenderStats, RgbImage, View, bounds_overlay, exposure_for, heat_map, render,
+    write_png,
 };
 
 use crate::failure::Failure;
@@ -23,6 +24,8 @@ pub(crate) struct Request<'a> {
     pub(crate) heatmap_max: Option<f32>,
     /// The level of the bounds.
     pub(crate) show_bounds: Option<usize>,
+    /// How much of the light is shown; else as much as a path tracer's picture has room for, or all of it.
+    pub(crate) exposure: Option<f32>,
 }
 
 /// A picture, and what a report says of it.
@@ -31,6 +34,8 @@ pub(crate) struct Drawn {
     pub(crate) render: RenderStats,
     pub(crate) heat: Option<Heat>,
     pub(crate) bounds: Option<Bounds>,
+    /// How much of the light is shown.
+    pub(crate) exposure: f32,
 }
 
 /// Light as it was computed, or what was drawn into.
@@ -73,11 +78,21 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
     let Some(quantity) = request.heatmap else {
         let (image, stats) =
             traced(pool, |progress| render(prepared, camera, lights, options, progress))?;
+        let exposure = match request.exposure {
+            Some(exposure) if options.integrator.shows_light => exposure,
+            None if options.integrator.name == "path" => {
+                let expose =
+                    |progress: &_| exposure_for(prepared, camera, lights, options, progress);
+                traced(pool, expose)?
+            }
+            _ => 1.0,
+        };
+        let image = image.exposed(exposure);
         let picture = match &overlay {
             None => Picture::Light(image),
             Some(_) => Picture::Drawn(draw_over(image.to_rgb_image())),
         };
-        return Ok(Drawn { picture, render: stats, heat: None, bounds });
+        return Ok(Drawn { picture, render: stats, heat: None, bounds, exposure });
     };
 
     let started = Instant::now();
@@ -88,7 +103,8 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
     let scale = request.heatmap_max.unwrap_or_else(|| map.default_maximum());
     let picture = map.with_legend(&draw_over(map.picture(scale)), scale);
     let heat = Heat::of(&map, scale);
-    Ok(Drawn { picture: Picture::Drawn(picture), render: stats, heat: Some(heat), bounds })
+    let picture = Picture::Drawn(picture);
+    Ok(Drawn { picture, render: stats, heat: Some(heat), bounds, exposure: 1.0 })
 }
 
 fn draw_bounds(

@@ -37,6 +37,12 @@ pub(crate) struct ViewArgs {
     /// Takes the place of the scene's lights, with a little ambient light. The strength S is relative: 1, the default, fully lights a surface as far away as the middle of the picture.
     #[arg(long, value_name = "X,Y,Z[,S]", allow_hyphen_values = true)]
     light: Vec<PointLight>,
+
+    /// Leave out the scene's lights, and choose none
+    ///
+    /// Then the scene is lit by surfaces that shine and by the surroundings alone: for integrator `path`.
+    #[arg(long, conflicts_with = "light", hide_short_help = true)]
+    no_lights: bool,
 }
 
 impl ViewArgs {
@@ -64,7 +70,9 @@ impl ViewArgs {
         camera.up = or_given(camera.up, self.up);
         camera.fov_y = self.fov.unwrap_or(camera.fov_y);
 
-        let lights = if !self.light.is_empty() {
+        let lights = if self.no_lights {
+            Vec::new()
+        } else if !self.light.is_empty() {
             let given = self.light.iter().map(|light| point_light(light, &camera));
             given.chain([ambient(0.15)]).collect()
         } else if !scene.lights.is_empty() {

@@ -4,12 +4,15 @@ use raywood_scene::{Rgb, linear_to_srgb};
 
 use crate::rgb_image::RgbImage;
 
-/// Rows of linear light, the first row on top. 1 is the white of a picture; lights and highlights may exceed it.
+/// Rows of linear light, the first row on top. 1 is the white of a picture; lights and highlights may exceed it. Or rows of
+/// [numbers](Self::from_numbers) that are no light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     width: u32,
     height: u32,
     pixels: Vec<Rgb>,
+    /// Whether these are numbers and no light.
+    are_numbers: bool,
 }
 
 impl Image {
@@ -24,7 +27,16 @@ impl Image {
             u64::from(width) * u64::from(height),
             "pixels of a {width}x{height} image"
         );
-        Self { width, height, pixels }
+        Self { width, height, pixels, are_numbers: false }
+    }
+
+    /// An image of numbers from 0 to 1, such as normals, row after row: picture files hold them as they are, neither compressed nor encoded.
+    ///
+    /// # Panics
+    ///
+    /// If there are not `width * height` pixels.
+    pub fn from_numbers(width: u32, height: u32, pixels: Vec<Rgb>) -> Self {
+        Self { are_numbers: true, ..Self::from_pixels(width, height, pixels) }
     }
 
     /// Columns.
@@ -40,6 +52,10 @@ impl Image {
     /// All pixels, row after row from the top.
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
+    }
+
+    pub(crate) fn pixels_mut(&mut self) -> &mut [Rgb] {
+        &mut self.pixels
     }
 
     /// The pixel in a column and a row, both counted from 0.
@@ -64,7 +80,15 @@ impl Image {
 
     /// The image in sRGB, three bytes a pixel, row after row.
     pub fn to_srgb8(&self) -> Vec<u8> {
-        self.pixels.iter().flat_map(|&color| srgb8(color)).collect()
+        self.pixels.iter().flat_map(|&color| self.bytes(color)).collect()
+    }
+
+    /// A pixel of this image as picture files hold it.
+    pub(crate) fn bytes(&self, pixel: Rgb) -> [u8; 3] {
+        match self.are_numbers {
+            true => pixel.to_array().map(|number| (255.0 * number + 0.5) as u8),
+            false => srgb8(pixel),
+        }
     }
 
     /// The image as picture files hold it.

@@ -1,17 +1,21 @@
-//! Scenes to images: Whitted ray tracing on the `raywood` library.
+//! Scenes to images: ray tracing on the `raywood` library.
 //!
 //! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`]. [`heat_map`] shows what the
 //! structure does for each pixel, [`bounds_overlay`] its boxes.
 
 mod bounds_overlay;
+mod bsdf;
 mod camera_rays;
+mod exposure;
 mod few_boxes;
 mod film;
 pub mod fresnel;
 mod heat_map;
 mod integrators;
+mod light_sampling;
 mod lights;
 mod options;
+mod path_samples;
 mod png;
 mod power;
 mod prepared;
@@ -23,12 +27,15 @@ mod sampling;
 mod shading;
 mod shadows;
 mod stats;
+mod surface_material;
 mod textured;
 mod tiles;
 mod view;
+mod wave;
 
 pub use bounds_overlay::{BoundsOverlay, bounds_overlay};
 pub use camera_rays::{CameraError, CameraRays};
+pub use exposure::exposure_for;
 pub use film::{Image, soft_clip, srgb8};
 pub use heat_map::{HeatMap, HeatQuantity, heat_map};
 pub use integrators::{INTEGRATORS, Integrator};

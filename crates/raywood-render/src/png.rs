@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::film::{Image, srgb8};
+use crate::film::Image;
 use crate::rgb_image::RgbImage;
 
 /// Writes the image as a PNG of 8 bits a channel, marked as sRGB.
@@ -15,7 +15,7 @@ pub fn write_png(image: &Image, writer: impl Write) -> io::Result<()> {
     let mut bytes = Vec::with_capacity(3 * image.width() as usize);
     write_rows(image.width(), image.height(), writer, |y, stream| {
         bytes.clear();
-        bytes.extend(image.row(y).iter().flat_map(|&color| srgb8(color)));
+        bytes.extend(image.row(y).iter().flat_map(|&color| image.bytes(color)));
         stream.write_all(&bytes)
     })
 }

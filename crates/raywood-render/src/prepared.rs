@@ -4,9 +4,11 @@ use std::ops::ControlFlow;
 
 use raywood::{Aabb, BuildError, BuildOptions, Geometry, Joined, SimdLevel, Spheres};
 use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
-use raywood_scene::{Axes, Material, MaterialId, Pattern, Rgb, Scene};
+use raywood_scene::{Axes, Environment, Material, MaterialId, Rgb, Scene};
 
 use crate::few_boxes::few_boxes;
+use crate::light_sampling::to_angles;
+use crate::surface_material::SurfaceMaterial;
 use crate::textured::TexturedMaterial;
 
 /// All surfaces of a scene: first its triangles, then its spheres.
@@ -25,6 +27,7 @@ pub struct PreparedScene<'a> {
     /// Of each material what its textures make of it.
     textured: Vec<Option<TexturedMaterial<'a>>>,
     is_textured: bool,
+    environment: Option<Environment>,
 }
 
 impl<'a> PreparedScene<'a> {
@@ -97,6 +100,7 @@ impl<'a> PreparedScene<'a> {
             perforated_bounds: Vec::new(),
             textured,
             is_textured,
+            environment: None,
         };
         prepared.perforated_bounds = prepared.bounds_of(|material| material.perforated);
         prepared.transmissive_bounds =
@@ -122,7 +126,10 @@ impl<'a> PreparedScene<'a> {
     /// What a ray sees that hits nothing; its direction is of unit length.
     #[inline(always)]
     pub(crate) fn background(&self, direction: Vec3) -> Rgb {
-        self.scene.background.color(direction.dot(self.axes.up))
+        match &self.environment {
+            None => self.scene.background.color(direction.dot(self.axes.up)),
+            Some(panorama) => in_panorama(panorama, self.axes.to_local(direction)),
+        }
     }
 
     /// The structure over the scene's surfaces.
@@ -173,6 +180,35 @@ impl<'a> PreparedScene<'a> {
         id.map_or(last, |&id: &MaterialId| (id as usize).min(last))
     }
 
+    /// How many primitives there are.
+    pub(crate) fn primitive_count(&self) -> u32 {
+        self.structure.geometry().len() as u32
+    }
+
+    /// The corners of a triangle of the mesh.
+    #[inline]
+    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.scene.mesh.triangles.corners(triangle)
+    }
+
+    /// The light that a material sends out, by its [number](Self::material_index), in the mean over its texture.
+    pub(crate) fn mean_emission(&self, index: u32) -> Rgb {
+        match self.textured_material(index) {
+            Some(textured) => textured.mean_emission().max(Rgb::ZERO),
+            None => self.material(index).emission,
+        }
+    }
+
+    /// Puts a panorama around the scene, in place of its background, or takes it away.
+    pub fn set_environment(&mut self, environment: Option<Environment>) {
+        self.environment = environment;
+    }
+
+    /// The panorama around the scene, if there is one.
+    pub(crate) fn environment(&self) -> Option<&Environment> {
+        self.environment.as_ref()
+    }
+
     /// Whether any surface may be textured.
     #[inline(always)]
     pub(crate) fn is_textured(&self) -> bool {
@@ -205,6 +241,13 @@ impl<'a> PreparedScene<'a> {
     }
 }
 
+/// What a panorama shows in a direction across, along and up. Not inlined, so that shading without one stays small.
+#[inline(never)]
+fn in_panorama(panorama: &Environment, direction: Vec3) -> Rgb {
+    let [down, turn] = to_angles(direction);
+    panorama.light(turn, down)
+}
+
 /// Which kind of surface a primitive is, and its number among those.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Which {
@@ -212,85 +255,4 @@ pub(crate) enum Which {
     Triangle(u32),
     /// An analytic sphere.
     Sphere(u32),
-}
-
-/// What shading reads of a [`Material`]: the same numbers, made safe (in range, not NaN), with the questions asked at
-/// every hit already answered.
-#[derive(Clone, Debug)]
-pub(crate) struct SurfaceMaterial {
-    pub(crate) diffuse: Rgb,
-    pub(crate) pattern: Pattern,
-    pub(crate) specular: Rgb,
-    pub(crate) shininess: f32,
-    pub(crate) mirror: Rgb,
-    /// The share mirrored at grazing angles.
-    pub(crate) grazing: f32,
-    pub(crate) transmission: Rgb,
-    pub(crate) ior: f32,
-    pub(crate) absorption: Vec3,
-    pub(crate) emission: Rgb,
-    /// Whether any light gets through.
-    pub(crate) transmissive: bool,
-    /// Whether the surface mirrors as `mirror` says.
-    pub(crate) mirrors: bool,
-    /// Whether lights leave a highlight.
-    pub(crate) shiny: bool,
-    /// Whether there may be points where not all of the surface is there.
-    pub(crate) perforated: bool,
-    /// How much of the surface is there; the rest lets rays straight on.
-    pub(crate) opacity: f32,
-    /// How much of the ambient light arrives.
-    pub(crate) ambient: f32,
-}
-
-impl SurfaceMaterial {
-    fn new(material: &Material) -> Self {
-        let mut safe = Self {
-            diffuse: material.diffuse,
-            pattern: material.pattern,
-            specular: material.specular,
-            shininess: material.shininess,
-            mirror: material.mirror,
-            grazing: 1.0,
-            transmission: material.transmission,
-            ior: material.ior,
-            absorption: positive(material.absorption),
-            emission: positive(material.emission),
-            transmissive: false,
-            mirrors: false,
-            shiny: false,
-            perforated: false,
-            opacity: 1.0,
-            ambient: 1.0,
-        };
-        safe.make_safe();
-        safe
-    }
-
-    /// Brings numbers into their range and answers the questions that follow from them.
-    #[inline(always)]
-    pub(crate) fn make_safe(&mut self) {
-        let share = |color: Rgb| positive(color).min(Rgb::ONE);
-        self.diffuse = positive(self.diffuse);
-        self.transmission = share(self.transmission);
-        self.transmissive = self.transmission.max_element() > 0.0;
-        self.mirror = if self.transmissive { Rgb::ZERO } else { share(self.mirror) };
-        self.mirrors = self.mirror.max_element() > 0.0;
-        self.specular = positive(self.specular);
-        self.shiny = self.specular.max_element() > 0.0;
-        self.shininess = finite_or(self.shininess, 50.0).max(0.0);
-        let ior = finite_or(self.ior, 1.0);
-        self.ior = if ior > 0.0 { ior } else { 1.0 };
-    }
-}
-
-#[inline(always)]
-fn finite_or(x: f32, other: f32) -> f32 {
-    if x.is_finite() { x } else { other }
-}
-
-#[inline(always)]
-fn positive(color: Rgb) -> Rgb {
-    let channel = |x: f32| finite_or(x, 0.0).max(0.0);
-    Rgb::new(channel(color.x), channel(color.y), channel(color.z))
 }

@@ -35,15 +35,19 @@ pub fn render(
     let camera = CameraRays::new(camera, width, height)?;
     let frame = Frame { scene, lights: &Lights::new(lights), camera, options, progress };
     let started = Instant::now();
+    let renderer = options.integrator.start(&frame);
 
     let (pixels, rays) = fill_tiles(
         (width, height),
         Rgb::ZERO,
         options.memory_bytes(),
         progress,
-        |tile, pixels| options.integrator.render_tile(&frame, tile, pixels),
+        |tile, pixels| renderer.render_tile(tile, pixels),
     )?;
-    let image = Image::from_pixels(width, height, pixels);
+    let image = match options.integrator.shows_light {
+        true => Image::from_pixels(width, height, pixels),
+        false => Image::from_numbers(width, height, pixels),
+    };
     let threads = rayon::current_num_threads();
     Ok((image, RenderStats { rays, elapsed: started.elapsed(), threads }))
 }

@@ -118,7 +118,7 @@ fn sobol_second(index: u32) -> u32 {
 /// Flips each bit as a hash of the seed and of the bits below it says: Owen's scrambling for a fraction whose bits are
 /// reversed, where multiplications carry upwards only (Laine and Karras 2011).
 #[inline(always)]
-fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
+pub(crate) fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x = x.wrapping_add(seed);
     x ^= x.wrapping_mul(0x6c50_b47c);
     x ^= x.wrapping_mul(0xb82f_1e52);
@@ -129,7 +129,7 @@ fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
 
 /// A hash in which every input bit reaches every output bit (the finalizer of MurmurHash3).
 #[inline]
-fn mix(mut x: u32) -> u32 {
+pub(crate) fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x85eb_ca6b);
     x ^= x >> 13;

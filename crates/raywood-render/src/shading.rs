@@ -4,7 +4,7 @@ use raywood::{SurfacePoint, Vec3};
 use raywood_scene::Rgb;
 
 use crate::fresnel::reflect;
-use crate::prepared::SurfaceMaterial;
+use crate::surface_material::SurfaceMaterial;
 
 /// The surface that a ray hit.
 pub(crate) struct Surface<'a> {

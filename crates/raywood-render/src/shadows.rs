@@ -6,7 +6,7 @@ use raywood_scene::{Light, LightKind, Rgb};
 use crate::PreparedScene;
 use crate::fresnel::dielectric;
 use crate::lights::{Illumination, cone_share, from_position};
-use crate::prepared::SurfaceMaterial;
+use crate::surface_material::SurfaceMaterial;
 use crate::textured::opacity_at;
 
 /// More surfaces than this between a point and a light, and the light counts as hidden.
@@ -168,6 +168,14 @@ pub(crate) fn transmittance(absorption: Rgb, length: f32) -> Rgb {
     }
     let left = |a: f32| if a > 0.0 { (-a * length).exp() } else { 1.0 };
     Rgb::new(left(absorption.x), left(absorption.y), left(absorption.z))
+}
+
+/// Whether a ray may meet one of some boxes; false only if it cannot.
+pub(crate) fn may_meet(ray: &Ray, bounds: &[Aabb]) -> bool {
+    let Vec3 { x, y, z } = ray.direction;
+    let reciprocal = Vec3::new(1.0 / x, 1.0 / y, 1.0 / z);
+    let interval = [ray.t_min, ray.t_max];
+    bounds.iter().any(|bounds| may_cross(ray.origin, reciprocal, interval, bounds))
 }
 
 /// Whether a ray may meet a box; false only if it cannot (Kay and Kajiya 1986, with a margin for rounding).

@@ -63,7 +63,16 @@ pub struct RenderStats {
 impl RenderStats {
     /// Million rays of all kinds a second.
     pub fn million_rays_per_second(&self) -> f64 {
+        self.millions_per_second(self.rays.total())
+    }
+
+    /// Million paths a second: each primary ray begins one.
+    pub fn million_paths_per_second(&self) -> f64 {
+        self.millions_per_second(self.rays.primary)
+    }
+
+    fn millions_per_second(&self, count: u64) -> f64 {
         let seconds = self.elapsed.as_secs_f64();
-        if seconds > 0.0 { self.rays.total() as f64 / seconds * 1e-6 } else { 0.0 }
+        if seconds > 0.0 { count as f64 / seconds * 1e-6 } else { 0.0 }
     }
 }

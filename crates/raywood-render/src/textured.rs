@@ -1,10 +1,12 @@
 //! Materials with textures: what they are made of, and what becomes of a material where its textures show something.
 
 use raywood::Hit;
-use raywood_scene::{LightShares, Material, Rgb, SurfaceTextures, Texture, TextureImage};
+use raywood_scene::{LightShares, Material, MetallicRoughness, Rgb, SurfaceTextures};
+use raywood_scene::{TexelGrid, Texture, TextureImage};
 
 use crate::PreparedScene;
-use crate::prepared::{SurfaceMaterial, Which};
+use crate::prepared::Which;
+use crate::surface_material::SurfaceMaterial;
 
 /// What a texture is for: the place of what it shows among what all show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,9 +97,27 @@ impl<'a> TexturedMaterial<'a> {
         has_image.then_some((texture, *scale))
     }
 
-    /// Makes of the material what it is where its textures show that, and vertices have a colour.
+    /// The light that it sends out in the mean over its texture, if it has one.
+    pub(crate) fn mean_emission(&self) -> Rgb {
+        let layer = self.layers.iter().find(|layer| layer.slot == Slot::Emission);
+        let mean = layer.map_or(Rgb::ONE, |layer| {
+            // The last level is one texel, the mean of all.
+            let grid = TexelGrid::new(layer.texture, [layer.image.width(), layer.image.height()]);
+            let last = layer.image.last_level();
+            rgb(layer.image.show(last, &grid.blend(last, [0.5; 2])))
+        });
+        self.material.emission * mean
+    }
+
+    /// Makes of the material what it is where its textures show that, and vertices have a colour; tells what it is made of, if its description by metal
+    /// and roughness says so.
     #[inline(always)]
-    pub(crate) fn apply(&self, found: &mut SurfaceMaterial, shown: &Shown, vertex_color: Rgb) {
+    pub(crate) fn apply(
+        &self,
+        found: &mut SurfaceMaterial,
+        shown: &Shown,
+        vertex_color: Rgb,
+    ) -> Option<MetallicRoughness> {
         let of = |slot: Slot| shown[slot as usize];
         found.opacity = opacity(self.textures, shown);
         found.emission = found.emission * rgb(of(Slot::Emission));
@@ -112,7 +132,7 @@ impl<'a> TexturedMaterial<'a> {
             found.specular = self.material.specular * specular;
             found.mirror = self.material.mirror * specular;
             found.make_safe();
-            return;
+            return None;
         };
         let [_, rough, metal, _] = of(Slot::MetallicRoughness);
         let glossy = of(Slot::Glossiness);
@@ -126,6 +146,7 @@ impl<'a> TexturedMaterial<'a> {
         (found.diffuse, found.specular, found.shininess) = (diffuse, specular, shininess);
         (found.mirror, found.grazing, found.transmission) = (mirror, grazing, transmission);
         found.make_safe();
+        Some(surface)
     }
 }
 
@@ -155,15 +176,33 @@ fn rgb([r, g, b, _]: [f32; 4]) -> Rgb {
 
 /// How much of a surface is there at a hit, as close up: for shadow rays.
 pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
-    let material = scene.textured_material(scene.material_index(hit.primitive) as u32);
-    let (Some(material), Which::Triangle(triangle)) = (material, scene.which(hit.primitive)) else {
-        return 1.0;
-    };
+    let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap);
+    show_close_up(scene, hit, is_wanted)
+        .map_or(1.0, |(material, shown)| opacity(material.textures, &shown))
+}
+
+/// The light that a surface sends out at a hit, as close up: for whoever chooses points on lights. What is not there sends out none.
+pub(crate) fn emission_at(scene: &PreparedScene<'_>, hit: &Hit) -> Rgb {
+    let whole = scene.material_of(hit.primitive).emission;
+    let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap | Slot::Emission);
+    show_close_up(scene, hit, is_wanted).map_or(whole, |(material, shown)| {
+        opacity(material.textures, &shown) * (whole * rgb(shown[Slot::Emission as usize]))
+    })
+}
+
+/// What some of the textures of a material show at a hit, as close up; `None` if it has none.
+fn show_close_up<'a>(
+    scene: &'a PreparedScene<'_>,
+    hit: &Hit,
+    is_wanted: impl Fn(Slot) -> bool,
+) -> Option<(&'a TexturedMaterial<'a>, Shown)> {
+    let material = scene.textured_material(scene.material_index(hit.primitive) as u32)?;
+    let Which::Triangle(triangle) = scene.which(hit.primitive) else { return None };
     let mesh = &scene.scene().mesh;
     let corners = mesh.triangles.triangles()[triangle as usize];
     let mut shown = [[1.0; 4]; _];
     for Layer { slot, texture, image, .. } in &material.layers {
-        if matches!(slot, Slot::Color | Slot::OpacityMap) {
+        if is_wanted(*slot) {
             let coordinates = &mesh.texture_coordinates[usize::from(texture.set.min(1))];
             let at = |i: usize| coordinates.get(corners[i] as usize).copied().unwrap_or([0.0; 2]);
             let (a, b, c) = (at(0), at(1), at(2));
@@ -172,5 +211,5 @@ pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
             shown[*slot as usize] = image.show_close_up(texture, point);
         }
     }
-    opacity(material.textures, &shown)
+    Some((material, shown))
 }

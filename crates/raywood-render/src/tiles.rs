@@ -30,6 +30,11 @@ pub(crate) const SQUARE_SIZE: u32 = 16;
 const BLOCK_SIZE: u32 = 4;
 
 impl Tile {
+    /// The column and row in the image of the pixel of a number in the tile.
+    pub(crate) fn place(&self, pixel: u32) -> [u32; 2] {
+        [self.x + pixel % TILE_SIZE, self.y + pixel / TILE_SIZE]
+    }
+
     /// The upper left corners of its squares: columns and rows in the tile.
     pub(crate) fn squares(&self) -> impl Iterator<Item = [u32; 2]> {
         let squares = |size: u32| (0..size).step_by(SQUARE_SIZE as usize);

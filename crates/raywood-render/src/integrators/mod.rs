@@ -1,6 +1,15 @@
-//! How light is followed: each method a file, and a line in [`INTEGRATORS`].
+//! How light is followed, or what else a picture shows: each method a file, and a line in [`INTEGRATORS`].
 
+mod albedo;
+mod ambient_occlusion;
+mod depth;
+mod first_hits;
+mod ids;
+mod normals;
+mod path;
+mod view_depths;
 mod whitted;
+mod wireframe;
 
 use std::fmt;
 
@@ -12,23 +21,40 @@ use crate::progress::Progress;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
 
-/// A method of following light.
+/// A method of following light, or of showing something else.
 #[derive(Clone, Copy)]
 pub struct Integrator {
     /// Its name on the command line.
     pub name: &'static str,
     /// What it does, in a line.
     pub help: &'static str,
-    /// Computes the pixels of a tile. Called once per tile, so that a method may trace its rays one by one, as packets
-    /// or as streams.
-    render_tile: TileRenderer,
+    /// Whether pictures show light, of which there may be more than white. Else they show numbers from 0 to 1, which are written as they are.
+    pub shows_light: bool,
+    /// Begins a picture.
+    start: Start,
 }
 
-/// Computes the pixels of a tile and counts the rays.
-type TileRenderer = fn(&Frame<'_>, &Tile, &mut TilePixels) -> RayCounts;
+/// Makes ready what is the same for all tiles of a picture.
+type Start = for<'a> fn(&'a Frame<'a>) -> Box<dyn TileRenderer + 'a>;
+
+/// A picture that is begun.
+pub(crate) trait TileRenderer: Sync {
+    /// Computes the pixels of a tile and counts the rays. Called once per tile, so that a method may trace its rays one by one, as packets or as
+    /// streams.
+    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts;
+}
 
 /// All methods; the first is the default.
-pub static INTEGRATORS: [Integrator; 1] = [whitted::INTEGRATOR];
+pub static INTEGRATORS: [Integrator; 8] = [
+    whitted::INTEGRATOR,
+    path::INTEGRATOR,
+    ambient_occlusion::INTEGRATOR,
+    normals::INTEGRATOR,
+    depth::INTEGRATOR,
+    albedo::INTEGRATOR,
+    ids::INTEGRATOR,
+    wireframe::INTEGRATOR,
+];
 
 impl Integrator {
     /// The method of this name.
@@ -36,13 +62,9 @@ impl Integrator {
         INTEGRATORS.iter().find(|integrator| integrator.name == name)
     }
 
-    pub(crate) fn render_tile(
-        &self,
-        frame: &Frame<'_>,
-        tile: &Tile,
-        pixels: &mut TilePixels,
-    ) -> RayCounts {
-        (self.render_tile)(frame, tile, pixels)
+    /// Begins a picture.
+    pub(crate) fn start<'a>(&self, frame: &'a Frame<'a>) -> Box<dyn TileRenderer + 'a> {
+        (self.start)(frame)
     }
 }
 
@@ -59,4 +81,12 @@ pub(crate) struct Frame<'a> {
     pub(crate) camera: CameraRays,
     pub(crate) options: &'a RenderOptions,
     pub(crate) progress: &'a Progress,
+}
+
+impl Frame<'_> {
+    /// By how much the cone that a primary ray stands for widens on a way of length 1: one of several rays of a pixel stands for a part of it.
+    #[inline(always)]
+    pub(crate) fn spread(&self) -> f32 {
+        self.camera.pixel_width() / (self.options.samples as f32).sqrt()
+    }
 }

@@ -3,9 +3,9 @@
 use raywood::Vec3;
 use raywood_scene::Texture;
 
+use super::WAVE;
 use super::columns::{Columns, ZERO, get, set};
 use super::footprints::Footprints;
-use super::queue::WAVE;
 use super::surfaces::Surfaces;
 use crate::PreparedScene;
 use crate::prepared::Which;
@@ -16,7 +16,7 @@ const LEAST_COSINE: f32 = 1e-2;
 
 /// Bends the normals of surfaces of these numbers as `shown` says. Tangents are the mesh's, else those of the triangles' texture coordinates.
 #[inline(always)]
-pub(super) fn bend_normals(
+pub(crate) fn bend_normals(
     scene: &PreparedScene<'_>,
     surfaces: &mut Surfaces,
     (texture, scale): (&Texture, f32),

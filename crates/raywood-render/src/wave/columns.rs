@@ -2,24 +2,24 @@
 
 use raywood::Vec3;
 
-use super::queue::WAVE;
+use super::WAVE;
 
 /// A number for each point.
-pub(super) type Column = [f32; WAVE];
+pub(crate) type Column = [f32; WAVE];
 
 /// A vector for each point.
-pub(super) type Columns = [Column; 3];
+pub(crate) type Columns = [Column; 3];
 
-pub(super) const ZERO: Columns = [[0.0; WAVE]; 3];
+pub(crate) const ZERO: Columns = [[0.0; WAVE]; 3];
 
 #[inline(always)]
-pub(super) fn set(columns: &mut Columns, number: usize, v: Vec3) {
+pub(crate) fn set(columns: &mut Columns, number: usize, v: Vec3) {
     columns[0][number] = v.x;
     columns[1][number] = v.y;
     columns[2][number] = v.z;
 }
 
 #[inline(always)]
-pub(super) fn get(columns: &Columns, number: usize) -> Vec3 {
+pub(crate) fn get(columns: &Columns, number: usize) -> Vec3 {
     Vec3::new(columns[0][number], columns[1][number], columns[2][number])
 }

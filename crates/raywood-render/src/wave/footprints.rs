@@ -3,26 +3,26 @@
 //! A ray stands for a cone as wide as a pixel, which widens on its way (Akenine-Moeller et al., "Texture Level of Detail Strategies for
 //! Real-Time Ray Tracing", 2019); a surface cuts an ellipse out of it.
 
+use super::WAVE;
 use super::columns::{Column, get};
-use super::queue::WAVE;
 use super::surfaces::Surfaces;
 use crate::PreparedScene;
 use crate::prepared::Which;
 use crate::ray_cone::{change, footprint};
 
 /// A pair of texture coordinates, or a step in them, for each surface.
-pub(super) type Pairs = [Column; 2];
+pub(crate) type Pairs = [Column; 2];
 
 /// Points and ellipses in one set of texture coordinates.
 #[derive(Clone)]
-pub(super) struct Footprints {
+pub(crate) struct Footprints {
     /// The points.
-    pub(super) points: Pairs,
+    pub(crate) points: Pairs,
     /// The axes of the ellipses: along the ray's direction, and across.
-    pub(super) along: Pairs,
-    pub(super) across: Pairs,
+    pub(crate) along: Pairs,
+    pub(crate) across: Pairs,
     /// The steps from the first corner of the triangle to the others.
-    pub(super) steps: [Pairs; 2],
+    pub(crate) steps: [Pairs; 2],
 }
 
 impl Default for Footprints {
@@ -35,7 +35,7 @@ impl Default for Footprints {
 impl Footprints {
     /// Finds them for a set. `spread` is by how much cones widen on a way of length 1.
     #[inline(always)]
-    pub(super) fn find(
+    pub(crate) fn find(
         &mut self,
         scene: &PreparedScene<'_>,
         surfaces: &Surfaces,

@@ -1,19 +1,17 @@
 //! The primary rays of a tile, one of each pixel at a time.
 
-use raywood::{Hit, HitColumns, Vec3, Vectorized};
-use raywood_scene::Rgb;
-
-use super::queue::{Path, Traced, WAVE};
+use super::{Traced, WAVE};
 use crate::camera_rays::CameraRays;
 use crate::sampling::PixelSamples;
 use crate::tiles::Tile;
+use raywood::{Hit, HitColumns, Vec3, Vectorized};
 
 /// The pixels of a square of a tile, those of a block together.
 #[derive(Default)]
-pub(super) struct PrimaryRays {
+pub(crate) struct PrimaryRays {
     pixels: Vec<Pixel>,
     /// Where one ray of each goes.
-    pub(super) directions: Vec<Vec3>,
+    pub(crate) directions: Vec<Vec3>,
 }
 
 /// A pixel and where its primary rays pass.
@@ -27,7 +25,7 @@ struct Pixel {
 
 impl PrimaryRays {
     /// Takes the pixels of a square of a tile.
-    pub(super) fn reset(&mut self, tile: &Tile, square: [u32; 2], samples: u32) {
+    pub(crate) fn reset(&mut self, tile: &Tile, square: [u32; 2], samples: u32) {
         self.pixels.clear();
         // Not `extend`, which would step through the nested ranges from outside, pixel by pixel.
         tile.pixels_in_blocks(square).for_each(|(number, [x, y])| {
@@ -37,16 +35,22 @@ impl PrimaryRays {
     }
 
     /// How many pixels these are.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.pixels.len()
+    }
+
+    /// The number in its tile of the pixel that a ray belongs to.
+    #[inline(always)]
+    pub(crate) fn pixel(&self, ray: usize) -> u16 {
+        self.pixels[ray].number as u16
     }
 }
 
 /// Finds out where ray `index` of every pixel goes.
-pub(super) struct SendPrimary<'a> {
-    pub(super) camera: &'a CameraRays,
-    pub(super) primary: &'a mut PrimaryRays,
-    pub(super) index: u32,
+pub(crate) struct SendPrimary<'a> {
+    pub(crate) camera: &'a CameraRays,
+    pub(crate) primary: &'a mut PrimaryRays,
+    pub(crate) index: u32,
 }
 
 impl Vectorized for SendPrimary<'_> {
@@ -86,10 +90,10 @@ impl Vectorized for SendPrimary<'_> {
 }
 
 /// Primary rays that were traced.
-pub(super) struct TracedPrimary<'a> {
-    pub(super) eye: Vec3,
-    pub(super) primary: &'a PrimaryRays,
-    pub(super) hits: &'a HitColumns,
+pub(crate) struct TracedPrimary<'a> {
+    pub(crate) eye: Vec3,
+    pub(crate) primary: &'a PrimaryRays,
+    pub(crate) hits: &'a HitColumns,
 }
 
 impl Traced for TracedPrimary<'_> {
@@ -109,10 +113,8 @@ impl Traced for TracedPrimary<'_> {
     }
 
     #[inline(always)]
-    fn path(&self, ray: usize) -> Path {
-        // In air. (An eye inside glass is noticed when the ray leaves it.)
-        let pixel = self.primary.pixels[ray].number as u16;
-        Path { pixel, holes: 0, weight: Rgb::ONE, absorption: Rgb::ZERO, length: 0.0 }
+    fn travelled(&self, _ray: usize) -> f32 {
+        0.0
     }
 
     #[inline(always)]

@@ -1,46 +1,50 @@
 //! The surfaces that a wave hit, in columns, ready for shading: what all hits need is computed with vectors.
 
 use raywood::{SurfacePoint, Vec3};
-use raywood_scene::{Pattern, Rgb};
+use raywood_scene::{MetallicRoughness, Pattern, Rgb};
 
 use super::columns::{Column, Columns, ZERO, get, set};
-use super::queue::{Traced, WAVE};
+use super::textured_surfaces::vertex_color;
+use super::{Traced, WAVE};
 use crate::PreparedScene;
-use crate::prepared::{SurfaceMaterial, Which};
+use crate::prepared::Which;
 use crate::shading::{Surface, bent_normal};
+use crate::surface_material::SurfaceMaterial;
 
 /// The surfaces that the rays of one wave hit, in the order of the rays; those that hit nothing are left out.
-pub(super) struct Surfaces {
+pub(crate) struct Surfaces {
     count: usize,
     /// The number of the ray in its wave.
     rays: [u32; WAVE],
     /// The number of what it hit.
     primitives: [u32; WAVE],
     /// The number of the material in its scene.
-    pub(super) materials: [u32; WAVE],
+    pub(crate) materials: [u32; WAVE],
     /// Where along the ray, and where on the triangle.
     distances: Column,
-    pub(super) weights: [Column; 2],
+    pub(crate) weights: [Column; 2],
     /// The directions of the rays, unit length.
-    pub(super) directions: Columns,
+    pub(crate) directions: Columns,
     /// The corners of the triangles, and what the mesh gives there.
-    pub(super) corners: [Columns; 3],
+    pub(crate) corners: [Columns; 3],
     corner_normals: [Columns; 3],
-    pub(super) positions: Columns,
+    pub(crate) positions: Columns,
     /// The surfaces' own normals.
     own_normals: Columns,
     clearances: Column,
     /// Where rays start that leave to the side that the wave came from.
-    pub(super) origins: Columns,
+    pub(crate) origins: Columns,
     /// Unit normals on the side that the wave came from: the geometric ones, those for shading.
-    pub(super) geometric_normals: Columns,
-    pub(super) normals: Columns,
+    pub(crate) geometric_normals: Columns,
+    pub(crate) normals: Columns,
     /// The diffuse colours there.
-    pub(super) diffuse: Columns,
+    pub(crate) diffuse: Columns,
     /// How long the ways from the eye are; only of scenes with textures.
-    pub(super) lengths: Column,
+    pub(crate) lengths: Column,
     /// The materials of textured surfaces, each with a number after those of the scene.
-    pub(super) textured: Vec<SurfaceMaterial>,
+    pub(crate) textured: Vec<SurfaceMaterial>,
+    /// What textured surfaces are made of, as far as it is described by metal and roughness; only for who asks.
+    pub(super) made_of: Option<Vec<Option<MetallicRoughness>>>,
 }
 
 impl Default for Surfaces {
@@ -64,6 +68,7 @@ impl Default for Surfaces {
             diffuse: ZERO,
             lengths: [0.0; WAVE],
             textured: Vec::new(),
+            made_of: None,
         }
     }
 }
@@ -71,31 +76,31 @@ impl Default for Surfaces {
 impl Surfaces {
     /// How many rays hit something, at most a wave.
     #[inline(always)]
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.count.min(WAVE)
     }
 
     /// The number of the ray that hit a surface.
     #[inline(always)]
-    pub(super) fn ray(&self, number: usize) -> usize {
+    pub(crate) fn ray(&self, number: usize) -> usize {
         self.rays[number] as usize
     }
 
     /// The number of the primitive that was hit.
     #[inline(always)]
-    pub(super) fn primitive(&self, number: usize) -> u32 {
+    pub(crate) fn primitive(&self, number: usize) -> u32 {
         self.primitives[number]
     }
 
     /// How far along its ray a surface is.
     #[inline(always)]
-    pub(super) fn distance(&self, number: usize) -> f32 {
+    pub(crate) fn distance(&self, number: usize) -> f32 {
         self.distances[number]
     }
 
     /// A surface by itself.
     #[inline(always)]
-    pub(super) fn get<'a>(&'a self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
+    pub(crate) fn get<'a>(&'a self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
         let direction = get(&self.directions, number);
         let point = SurfacePoint {
             position: get(&self.positions, number),
@@ -117,7 +122,7 @@ impl Surfaces {
 
     /// Finds the surfaces that a wave hit, and has `miss` look at the rays that hit nothing.
     #[inline(always)]
-    pub(super) fn find(
+    pub(crate) fn find(
         &mut self,
         scene: &PreparedScene<'_>,
         wave: &impl Traced,
@@ -173,11 +178,31 @@ impl Surfaces {
         self.find_colors(scene, wave);
     }
 
+    /// Has it kept in mind what textured surfaces are made of.
+    pub(crate) fn keep_what_all_is_made_of(&mut self) {
+        self.made_of.get_or_insert_default();
+    }
+
+    /// What a surface is made of, if it is described by metal and roughness. Of textured surfaces only where that is kept in mind.
+    pub(crate) fn made_of(
+        &self,
+        scene: &PreparedScene<'_>,
+        number: usize,
+    ) -> Option<MetallicRoughness> {
+        let material = self.materials[number];
+        if let Some(own) = material.checked_sub(scene.material_count()) {
+            return self.made_of.as_ref()?.get(own as usize).copied().flatten();
+        }
+        let made_of = scene.scene().materials.get(material as usize)?.metallic_roughness?;
+        let base = made_of.base * vertex_color(scene, self, number);
+        Some(MetallicRoughness { base, ..made_of })
+    }
+
     /// Finds how long the ways from the eye to the surfaces are.
     #[inline(always)]
-    pub(super) fn find_lengths(&mut self, wave: &impl Traced) {
+    pub(crate) fn find_lengths(&mut self, wave: &impl Traced) {
         for number in 0..self.count() {
-            self.lengths[number] = wave.path(self.ray(number)).length + self.distances[number];
+            self.lengths[number] = wave.travelled(self.ray(number)) + self.distances[number];
         }
     }
 

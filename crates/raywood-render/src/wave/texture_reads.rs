@@ -6,9 +6,9 @@
 
 use raywood_scene::{TexelBlend, TexelGrid, Texture, blend_levels};
 
+use super::WAVE;
 use super::columns::Column;
 use super::footprints::Footprints;
-use super::queue::WAVE;
 use crate::ray_cone::rough_log2;
 use crate::textured::{Layer, Shown, TexturedMaterial};
 
@@ -16,7 +16,7 @@ use crate::textured::{Layer, Shown, TexturedMaterial};
 const MOST_READS: usize = 4;
 
 /// Where textures are read, in columns.
-pub(super) struct TextureReads {
+pub(crate) struct TextureReads {
     /// The middles of the ellipses on the image, and their longer axes.
     points: [Column; 2],
     axes: [Column; 2],
@@ -79,7 +79,7 @@ impl Default for TextureReads {
 impl TextureReads {
     /// Reads all textures of a material at the surfaces of these numbers.
     #[inline(always)]
-    pub(super) fn read(
+    pub(crate) fn read(
         &mut self,
         material: &TexturedMaterial<'_>,
         footprints: &[Footprints; 2],

@@ -3,10 +3,10 @@
 use raywood::Vectorized;
 use raywood_scene::Rgb;
 
+use super::WAVE;
 use super::bent_normals::bend_normals;
 use super::columns::set;
 use super::footprints::Footprints;
-use super::queue::WAVE;
 use super::surfaces::Surfaces;
 use super::texture_reads::TextureReads;
 use crate::PreparedScene;
@@ -14,7 +14,7 @@ use crate::prepared::Which;
 use crate::textured::Shown;
 
 /// The memory that textures need.
-pub(super) struct TextureMemory {
+pub(crate) struct TextureMemory {
     footprints: [Footprints; 2],
     reads: TextureReads,
     /// What textures show at the surfaces of one material.
@@ -32,12 +32,12 @@ impl Default for TextureMemory {
 }
 
 /// Finds what textures make of the surfaces of a wave, whose ways from the eye are known.
-pub(super) struct TextureSurfaces<'a> {
-    pub(super) scene: &'a PreparedScene<'a>,
-    pub(super) surfaces: &'a mut Surfaces,
-    pub(super) memory: &'a mut TextureMemory,
+pub(crate) struct TextureSurfaces<'a> {
+    pub(crate) scene: &'a PreparedScene<'a>,
+    pub(crate) surfaces: &'a mut Surfaces,
+    pub(crate) memory: &'a mut TextureMemory,
     /// By how much the cones that rays stand for widen on a way of length 1.
-    pub(super) spread: f32,
+    pub(crate) spread: f32,
 }
 
 impl Vectorized for TextureSurfaces<'_> {
@@ -48,6 +48,7 @@ impl Vectorized for TextureSurfaces<'_> {
         let Self { scene, surfaces, memory, spread } = self;
         let TextureMemory { footprints, reads, shown } = memory;
         surfaces.textured.clear();
+        surfaces.made_of.iter_mut().for_each(Vec::clear);
         let mut waiting = [0u8; WAVE];
         let mut left = 0;
         for number in 0..surfaces.count() {
@@ -89,7 +90,11 @@ impl Vectorized for TextureSurfaces<'_> {
             for (&number, shown) in same.iter().zip(&*shown) {
                 let number = usize::from(number);
                 let mut own = scene.material(index).clone();
-                material.apply(&mut own, shown, vertex_color(scene, surfaces, number));
+                let made_of =
+                    material.apply(&mut own, shown, vertex_color(scene, surfaces, number));
+                if let Some(all) = &mut surfaces.made_of {
+                    all.push(made_of);
+                }
                 set(&mut surfaces.diffuse, number, own.diffuse);
                 let count = surfaces.textured.len() as u32;
                 surfaces.materials[number] = scene.material_count() + count;
@@ -101,7 +106,7 @@ impl Vectorized for TextureSurfaces<'_> {
 
 /// The colour that the mesh gives at a surface.
 #[inline(always)]
-fn vertex_color(scene: &PreparedScene<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+pub(super) fn vertex_color(scene: &PreparedScene<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
     let mesh = &scene.scene().mesh;
     if mesh.colors.is_empty() {
         return Rgb::ONE;

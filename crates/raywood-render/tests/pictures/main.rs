@@ -3,8 +3,10 @@
 mod bounds_overlay;
 mod common;
 mod film;
+mod first_hits;
 mod heat_map;
 mod optics;
+mod path;
 mod references;
 mod rendering;
 mod textures;

@@ -1,25 +1,26 @@
 //! `raywood render`: a scene in, a picture out.
 
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+mod report;
 
-use raywood::{StructureKind, StructureStats};
-use raywood_render::{HeatQuantity, RenderOptions, RenderStats};
-use raywood_scene::Scene;
-use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use raywood::StructureKind;
+use raywood_render::{HeatQuantity, INTEGRATORS, Integrator, RenderOptions};
+use raywood_scene::{Environment, load_environment};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
-use crate::exporters;
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::{Size, above_zero, heat_quantity, structure_kind};
-use crate::picture::{self, Bounds, Heat, Request};
-use crate::print::{self, thousands};
+use crate::parse::{Size, above_zero, exposure, heat_quantity, integrator, structure_kind};
+use crate::picture::{self, Request};
+use crate::print;
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
 use crate::simd_args::SimdArgs;
 use crate::view_args::ViewArgs;
+use report::Report;
 
 /// Render a model file or a built-in scene to a PNG picture.
 #[derive(clap::Args)]
@@ -44,6 +45,17 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "WxH", default_value = "1280x800")]
     size: Size,
 
+    /// How light is followed, or what is shown instead
+    #[arg(
+        short,
+        long,
+        value_name = "NAME",
+        value_parser = integrator,
+        default_value = INTEGRATORS[0].name,
+        long_help = integrators_help()
+    )]
+    integrator: &'static Integrator,
+
     /// Rays per pixel, for smooth edges
     #[arg(short = 'n', long, value_name = "N", default_value_t = 4)]
     samples: u32,
@@ -66,6 +78,18 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     view: ViewArgs,
+
+    /// Panorama around the scene (.hdr), or none
+    ///
+    /// A Radiance picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it.
+    #[arg(long, value_name = "FILE.hdr|none", hide_short_help = true)]
+    environment: Option<PathBuf>,
+
+    /// How bright, in stops; each doubles the light
+    ///
+    /// Else 0, but for integrator `path`, where the picture is darkened until nine tenths of it are not too bright.
+    #[arg(long, value_name = "STOPS", value_parser = exposure, allow_hyphen_values = true, hide_short_help = true)]
+    exposure: Option<f32>,
 
     /// Transparent things cast black shadows
     ///
@@ -108,21 +132,11 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// What was done and how long it took.
-struct Report<'a> {
-    args: &'a Args,
-    scene: &'a Scene,
-    kind: StructureKind,
-    /// Whether the structure was saved with the scene.
-    is_saved: bool,
-    structure: StructureStats,
-    load: Duration,
-    build: Duration,
-    view: Duration,
-    render: RenderStats,
-    heat: Option<Heat>,
-    bounds: Option<Bounds>,
-    write: Duration,
+/// All integrators, a line each.
+fn integrators_help() -> String {
+    let line = |integrator: &Integrator| format!("  {:<10} {}", integrator.name, integrator.help);
+    let lines: Vec<_> = INTEGRATORS.iter().map(line).collect();
+    format!("How light is followed, or what is shown instead\n\n{}", lines.join("\n"))
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -134,10 +148,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         samples: args.samples,
         max_depth: args.depth,
         opaque_shadows: args.opaque_shadows,
+        integrator: args.integrator,
         ..RenderOptions::default()
     };
     options.validate().map_err(Failure::bad_input)?;
     let output = output_file(args)?;
+    let environment = args.environment.as_deref().map(environment).transpose()?;
 
     let pool = thread_pool(args.threads.map(usize::from))?;
     let loaded =
@@ -147,7 +163,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
+    let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
+    prepared.set_environment(environment);
     let build = started.elapsed();
 
     let started = Instant::now();
@@ -162,6 +179,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         heatmap: args.heatmap,
         heatmap_max: args.heatmap_max,
         show_bounds: args.show_bounds,
+        exposure: args.exposure,
     };
     let drawn = picture::draw(&request, &pool)?;
 
@@ -182,9 +200,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         render: drawn.render,
         heat: drawn.heat,
         bounds: drawn.bounds,
+        exposure: drawn.exposure,
         write,
     };
     if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
+}
+
+/// The panorama of a file, or a black one.
+fn environment(path: &Path) -> Result<Environment, Failure> {
+    match path.to_str() {
+        Some("none") => Ok(Environment::black()),
+        _ => load_environment(path).map_err(Failure::bad_input),
+    }
 }
 
 /// The picture's file, known to be writable.
@@ -196,111 +223,4 @@ fn output_file(args: &Args) -> Result<OutputFile, Failure> {
         return Err(Failure::BadInput(message));
     }
     OutputFile::new(path)
-}
-
-impl Report<'_> {
-    fn as_text(&self) -> String {
-        let Self { args, scene, kind, is_saved, structure, .. } = self;
-        let Self { load, build, view, render, heat, bounds, write, .. } = self;
-        let rays = render.rays;
-        let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
-        let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
-        let mut line = |name: &str, value: String| text += &format!("  {name:<8}{value}\n");
-
-        let spheres = match scene.spheres.as_slice().len() {
-            0 => String::new(),
-            n => format!(", {} spheres", thousands(n as u64)),
-        };
-        let triangles = thousands(scene.mesh.triangles.triangles().len() as u64);
-        line("load", format!("{}   {triangles} triangles{spheres}", seconds(load)));
-        let megabytes = structure.bytes as f64 / 1e6;
-        let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
-        let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
-        let saved = if *is_saved { " as saved" } else { "" };
-        line("build", format!("{}   {}{saved}, {size}", seconds(build), kind.name()));
-        line("view", seconds(view));
-        let [primary, shadow, reflection, refraction] =
-            [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
-        line(
-            "render",
-            format!(
-                "{}   {:.1} million rays/s on {} threads",
-                seconds(&render.elapsed),
-                render.million_rays_per_second(),
-                render.threads
-            ),
-        );
-        if let Some(Bounds { level, boxes, time }) = bounds {
-            let boxes = thousands(*boxes as u64);
-            line("bounds", format!("{}   {boxes} boxes of level {level}", seconds(time)));
-        }
-        line("write", seconds(write));
-        line(
-            "rays",
-            format!(
-                "{primary} primary, {shadow} shadow, {reflection} reflection, {refraction} refraction"
-            ),
-        );
-        if let Some(Heat { quantity, mean, max, scale, pixels_above }) = heat {
-            let above = match pixels_above {
-                0 => String::new(),
-                above => format!(", {} pixels above", thousands(*above as u64)),
-            };
-            let label = quantity.label();
-            let values = format!("mean {mean:.1}, maximum {max}, scale 0 to {scale}{above}");
-            line("heat", format!("{label}: {values}"));
-        }
-        text
-    }
-
-    /// The picture in a few words.
-    fn what(&self) -> String {
-        let Args { scene, size: Size { width, height }, samples, .. } = self.args;
-        format!("{scene} at {width}x{height}, {samples} samples per pixel")
-    }
-
-    fn as_json(&self) -> Value {
-        let Self { args, scene, kind, is_saved, structure, .. } = self;
-        let Self { load, build, view, render, heat, bounds, write, .. } = self;
-        let rays = render.rays;
-        json!({
-            "scene": args.scene,
-            "output": args.output.display().to_string(),
-            "width": args.size.width,
-            "height": args.size.height,
-            "samples": args.samples,
-            "depth": args.depth,
-            "threads": render.threads,
-            "triangles": scene.mesh.triangles.triangles().len(),
-            "spheres": scene.spheres.as_slice().len(),
-            "warnings": scene.warnings,
-            "saved_tree": is_saved,
-            "seconds": {
-                "load": load.as_secs_f64(),
-                "build": build.as_secs_f64(),
-                "view": view.as_secs_f64(),
-                "render": render.elapsed.as_secs_f64(),
-                "write": write.as_secs_f64(),
-            },
-            "rays": {
-                "primary": rays.primary,
-                "shadow": rays.shadow,
-                "reflection": rays.reflection,
-                "refraction": rays.refraction,
-                "total": rays.total(),
-            },
-            "million_rays_per_second": render.million_rays_per_second(),
-            "heatmap": heat.as_ref().map(|heat| json!({
-                "quantity": heat.quantity.name(),
-                "mean": heat.mean,
-                "max": heat.max,
-                "scale": heat.scale,
-                "pixels_above_scale": heat.pixels_above,
-            })),
-            "bounds": bounds.as_ref().map(|bounds| json!({
-                "level": bounds.level, "boxes": bounds.boxes, "seconds": bounds.time.as_secs_f64(),
-            })),
-            "structure": exporters::structure(*kind, structure),
-        })
-    }
 }

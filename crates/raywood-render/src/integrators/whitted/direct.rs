@@ -5,14 +5,14 @@ use raywood_scene::Rgb;
 
 use super::coloured::ColouredShadows;
 use super::lit_points::{LitPoint, LitPoints, SendShadowRays, ShadowRays};
-use super::queue::WAVE;
-use super::surfaces::Surfaces;
 use crate::integrators::Frame;
 use crate::lights::Lights;
 use crate::prepared::PreparedScene;
 use crate::shadows::{Aim, LightMayPass};
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
+use crate::wave::WAVE;
+use crate::wave::surfaces::Surfaces;
 
 /// Points that wait for light, and shadow rays that wait to be traced.
 #[derive(Default)]

@@ -3,12 +3,12 @@
 use raywood::{Vec3, Vectorized};
 use raywood_scene::{Light, LightKind, Rgb};
 
-use super::columns::{Column, Columns, ZERO, get, set};
-use super::queue::WAVE;
-use super::surfaces::Surfaces;
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::power::power;
 use crate::shading::light_cosine;
+use crate::wave::WAVE;
+use crate::wave::columns::{Column, Columns, ZERO, get, set};
+use crate::wave::surfaces::Surfaces;
 
 /// What a point does with light that reaches it.
 pub(super) struct LitPoint {

@@ -6,23 +6,16 @@
 //! Rays are not followed one by one but in waves of those that belong together: the primary rays of a tile, the mirrored ones of a depth, the
 //! shadow rays of a light. Structures trace such rays as packets.
 
-mod bent_normals;
 mod coloured;
-mod columns;
 mod direct;
-mod footprints;
 mod lit_points;
-mod primary;
 mod queue;
 mod shade;
-mod surfaces;
-mod texture_reads;
-mod textured_surfaces;
 mod waves;
 
 use std::cell::RefCell;
 
-use super::{Frame, Integrator};
+use super::{Frame, Integrator, TileRenderer};
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
 use waves::{Scratch, Waves};
@@ -31,18 +24,26 @@ use waves::{Scratch, Waves};
 pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "whitted",
     help: "direct light with sharp shadows, mirror reflection and refraction (Whitted 1980)",
-    render_tile,
+    shows_light: true,
+    start: |frame| Box::new(Whitted { frame }),
 };
+
+/// A picture of this method.
+struct Whitted<'a> {
+    frame: &'a Frame<'a>,
+}
 
 thread_local! {
     /// Kept from tile to tile, so that none asks for memory.
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-fn render_tile(frame: &Frame<'_>, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
-    SCRATCH.with_borrow_mut(|scratch| {
-        let mut waves = Waves::new(frame, pixels, scratch);
-        waves.follow_all(tile);
-        waves.counts()
-    })
+impl TileRenderer for Whitted<'_> {
+    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
+        SCRATCH.with_borrow_mut(|scratch| {
+            let mut waves = Waves::new(self.frame, pixels, scratch);
+            waves.follow_all(tile);
+            waves.counts()
+        })
+    }
 }

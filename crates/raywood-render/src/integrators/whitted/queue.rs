@@ -3,11 +3,8 @@
 use raywood::{Hit, Ray, Vec3};
 use raywood_scene::Rgb;
 
-/// How many rays are shaded together: as many as structures take in one packet.
-pub(super) const WAVE: usize = 256;
-
-/// How many rays of a queue are traced together: several packets, so that the rays that are left over from each, and are traced one by one, are many at a time.
-pub(super) const TRACED: usize = 4 * WAVE;
+use crate::wave::primary::TracedPrimary;
+use crate::wave::{TRACED, Traced};
 
 /// How a ray came here.
 #[derive(Clone, Copy)]
@@ -24,18 +21,19 @@ pub(super) struct Path {
     pub(super) length: f32,
 }
 
-/// Rays that were traced, and what they hit.
-pub(super) trait Traced {
-    /// How many rays.
-    fn len(&self) -> usize;
-    /// Where a ray started.
-    fn origin(&self, ray: usize) -> Vec3;
-    /// Where it went, unit length.
-    fn direction(&self, ray: usize) -> Vec3;
-    /// How it came here.
+/// Rays that were traced, of which it is known how they came here.
+pub(super) trait Followed: Traced {
+    /// How a ray came here.
     fn path(&self, ray: usize) -> Path;
-    /// What it hit.
-    fn hit(&self, ray: usize) -> Option<Hit>;
+}
+
+impl Followed for TracedPrimary<'_> {
+    #[inline(always)]
+    fn path(&self, ray: usize) -> Path {
+        // In air. (An eye inside glass is noticed when the ray leaves it.)
+        let pixel = self.primary.pixel(ray);
+        Path { pixel, holes: 0, weight: Rgb::ONE, absorption: Rgb::ZERO, length: 0.0 }
+    }
 }
 
 /// Rays of a queue that were traced.
@@ -62,13 +60,20 @@ impl Traced for TracedQueue<'_> {
     }
 
     #[inline(always)]
-    fn path(&self, ray: usize) -> Path {
-        self.paths[ray]
+    fn travelled(&self, ray: usize) -> f32 {
+        self.paths[ray].length
     }
 
     #[inline(always)]
     fn hit(&self, ray: usize) -> Option<Hit> {
         self.hits[ray]
+    }
+}
+
+impl Followed for TracedQueue<'_> {
+    #[inline(always)]
+    fn path(&self, ray: usize) -> Path {
+        self.paths[ray]
     }
 }
 

@@ -3,18 +3,18 @@
 use raywood::{Ray, SimdLevel, Vec3, Vectorized};
 use raywood_scene::Rgb;
 
-use super::columns::get;
 use super::direct::DirectLight;
 use super::lit_points::LitPoint;
-use super::queue::{Followers, Path, Traced};
-use super::surfaces::Surfaces;
-use super::textured_surfaces::{TextureMemory, TextureSurfaces};
+use super::queue::{Followed, Followers, Path};
 use crate::fresnel::{Interface, dielectric, refract, schlick_to};
 use crate::integrators::Frame;
 use crate::shading::{Surface, keep_on_side};
 use crate::shadows::transmittance;
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
+use crate::wave::columns::get;
+use crate::wave::surfaces::Surfaces;
+use crate::wave::textured_surfaces::{TextureMemory, TextureSurfaces};
 
 /// Shades the hits of a wave.
 pub(super) struct Shader<'a> {
@@ -38,16 +38,14 @@ pub(super) struct ShadeWave<'a, 'b, W> {
     pub(super) level: SimdLevel,
 }
 
-impl<W: Traced> Vectorized for ShadeWave<'_, '_, W> {
+impl<W: Followed> Vectorized for ShadeWave<'_, '_, W> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         let Self { mut shader, wave, surfaces, memory, level } = self;
         let scene = shader.frame.scene;
-        // One of several rays of a pixel stands for a part of it.
-        let frame = shader.frame;
-        let spread = frame.camera.pixel_width() / (frame.options.samples as f32).sqrt();
+        let spread = shader.frame.spread();
         surfaces.find(scene, &wave, |ray| {
             let path = wave.path(ray);
             shader.add(&path, path.weight * scene.background(wave.direction(ray)));
@@ -66,7 +64,7 @@ impl<W: Traced> Vectorized for ShadeWave<'_, '_, W> {
 impl Shader<'_> {
     /// Adds the light that comes back along a ray from the surface that it hit, and sends further rays.
     #[inline(always)]
-    fn shade(&mut self, wave: &impl Traced, surfaces: &Surfaces, number: usize) {
+    fn shade(&mut self, wave: &impl Followed, surfaces: &Surfaces, number: usize) {
         let surface = surfaces.get(self.frame.scene, number);
         let direction = get(&surfaces.directions, number);
         let path = wave.path(surfaces.ray(number));

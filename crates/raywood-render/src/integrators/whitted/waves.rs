@@ -3,14 +3,15 @@
 use raywood::{Hit, HitColumns, SimdLevel};
 
 use super::direct::DirectLight;
-use super::primary::{PrimaryRays, SendPrimary, TracedPrimary};
-use super::queue::{Queue, TRACED, Traced, TracedQueue, WAVE, Waiting};
+use super::queue::{Followed, Queue, TracedQueue, Waiting};
 use super::shade::{ShadeWave, Shader};
-use super::surfaces::Surfaces;
-use super::textured_surfaces::TextureMemory;
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
+use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::surfaces::Surfaces;
+use crate::wave::textured_surfaces::TextureMemory;
+use crate::wave::{TRACED, WAVE};
 
 /// The memory that a tile needs.
 #[derive(Default)]
@@ -143,7 +144,7 @@ const FEWEST: usize = TRACED;
 /// Shades what a wave hit and sends shadow rays from there.
 fn shade(
     shader: Shader<'_>,
-    wave: impl Traced,
+    wave: impl Followed,
     (surfaces, memory): (&mut Surfaces, &mut TextureMemory),
     level: SimdLevel,
 ) {

@@ -1,0 +1,152 @@
+//! What `raywood render` says it did.
+
+use std::time::Duration;
+
+use raywood::{StructureKind, StructureStats};
+use raywood_render::RenderStats;
+use raywood_scene::Scene;
+use serde_json::{Value, json};
+
+use super::Args;
+use crate::exporters;
+use crate::parse::Size;
+use crate::picture::{Bounds, Heat};
+use crate::print::thousands;
+
+/// What was done and how long it took.
+pub(super) struct Report<'a> {
+    pub(super) args: &'a Args,
+    pub(super) scene: &'a Scene,
+    pub(super) kind: StructureKind,
+    /// Whether the structure was saved with the scene.
+    pub(super) is_saved: bool,
+    pub(super) structure: StructureStats,
+    pub(super) load: Duration,
+    pub(super) build: Duration,
+    pub(super) view: Duration,
+    pub(super) render: RenderStats,
+    pub(super) heat: Option<Heat>,
+    pub(super) bounds: Option<Bounds>,
+    pub(super) exposure: f32,
+    pub(super) write: Duration,
+}
+
+impl Report<'_> {
+    /// For people.
+    pub(super) fn as_text(&self) -> String {
+        let Self { args, scene, kind, is_saved, structure, .. } = self;
+        let Self { load, build, view, render, heat, bounds, write, .. } = self;
+        let rays = render.rays;
+        let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
+        let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
+        let mut line = |name: &str, value: String| text += &format!("  {name:<8}{value}\n");
+
+        let spheres = match scene.spheres.as_slice().len() {
+            0 => String::new(),
+            n => format!(", {} spheres", thousands(n as u64)),
+        };
+        let triangles = thousands(scene.mesh.triangles.triangles().len() as u64);
+        line("load", format!("{}   {triangles} triangles{spheres}", seconds(load)));
+        let megabytes = structure.bytes as f64 / 1e6;
+        let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
+        let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
+        let saved = if *is_saved { " as saved" } else { "" };
+        line("build", format!("{}   {}{saved}, {size}", seconds(build), kind.name()));
+        line("view", seconds(view));
+        let [primary, shadow, reflection, refraction] =
+            [rays.primary, rays.shadow, rays.reflection, rays.refraction].map(thousands);
+        // Of a path tracer each primary ray begins a path.
+        let paths = match args.integrator.name {
+            "path" => format!("{:.2} million paths/s, ", render.million_paths_per_second()),
+            _ => String::new(),
+        };
+        line(
+            "render",
+            format!(
+                "{}   {paths}{:.1} million rays/s on {} threads",
+                seconds(&render.elapsed),
+                render.million_rays_per_second(),
+                render.threads
+            ),
+        );
+        if let Some(Bounds { level, boxes, time }) = bounds {
+            let boxes = thousands(*boxes as u64);
+            line("bounds", format!("{}   {boxes} boxes of level {level}", seconds(time)));
+        }
+        if self.exposure != 1.0 {
+            line("expose", format!("{:+.2} stops", self.exposure.log2()));
+        }
+        line("write", seconds(write));
+        line(
+            "rays",
+            format!(
+                "{primary} primary, {shadow} shadow, {reflection} reflection, {refraction} refraction"
+            ),
+        );
+        if let Some(Heat { quantity, mean, max, scale, pixels_above }) = heat {
+            let above = match pixels_above {
+                0 => String::new(),
+                above => format!(", {} pixels above", thousands(*above as u64)),
+            };
+            let label = quantity.label();
+            let values = format!("mean {mean:.1}, maximum {max}, scale 0 to {scale}{above}");
+            line("heat", format!("{label}: {values}"));
+        }
+        text
+    }
+
+    /// The picture in a few words.
+    fn what(&self) -> String {
+        let Args { scene, size: Size { width, height }, samples, .. } = self.args;
+        format!("{scene} at {width}x{height}, {samples} samples per pixel")
+    }
+
+    /// For programs.
+    pub(super) fn as_json(&self) -> Value {
+        let Self { args, scene, kind, is_saved, structure, .. } = self;
+        let Self { load, build, view, render, heat, bounds, write, .. } = self;
+        let rays = render.rays;
+        json!({
+            "scene": args.scene,
+            "output": args.output.display().to_string(),
+            "width": args.size.width,
+            "height": args.size.height,
+            "integrator": args.integrator.name,
+            "exposure": self.exposure,
+            "samples": args.samples,
+            "depth": args.depth,
+            "threads": render.threads,
+            "triangles": scene.mesh.triangles.triangles().len(),
+            "spheres": scene.spheres.as_slice().len(),
+            "warnings": scene.warnings,
+            "saved_tree": is_saved,
+            "seconds": {
+                "load": load.as_secs_f64(),
+                "build": build.as_secs_f64(),
+                "view": view.as_secs_f64(),
+                "render": render.elapsed.as_secs_f64(),
+                "write": write.as_secs_f64(),
+            },
+            "rays": {
+                "primary": rays.primary,
+                "shadow": rays.shadow,
+                "reflection": rays.reflection,
+                "refraction": rays.refraction,
+                "total": rays.total(),
+            },
+            "million_rays_per_second": render.million_rays_per_second(),
+            "million_paths_per_second": render.million_paths_per_second(),
+            "heatmap": heat.as_ref().map(|heat| json!({
+                "quantity": heat.quantity.name(),
+                "mean": heat.mean,
+                "max": heat.max,
+                "scale": heat.scale,
+                "pixels_above_scale": heat.pixels_above,
+            })),
+            "bounds": bounds.as_ref().map(|bounds| json!({
+                "level": bounds.level, "boxes": bounds.boxes, "seconds": bounds.time.as_secs_f64(),
+            })),
+            "structure": exporters::structure(*kind, structure),
+        })
+    }
+}

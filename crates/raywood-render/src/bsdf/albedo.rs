@@ -1,0 +1,148 @@
+//! How much light rough mirrors send back in all: tables of the integrals that have no closed form.
+//!
+//! What facets mirror into other facets is lost to a model of single scattering; the share that is left tells how much there is to give back
+//! (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017).
+
+use std::sync::LazyLock;
+
+use raywood::Vec3;
+
+use super::ggx::Ggx;
+use crate::path_samples::PathSamples;
+
+/// Rows and columns of a table: cosines from 0 to 1, and square roots of alpha from 0 to 1.
+pub(crate) const COSINES: usize = 32;
+pub(crate) const ROUGHNESSES: usize = 32;
+
+/// Below this alpha a surface counts as smooth.
+pub(crate) const SMOOTHEST: f32 = 1e-3;
+
+/// Shares of light, by the cosine of the angle of view.
+pub(crate) type Row<T> = [T; COSINES];
+
+/// Of light that comes back from a rough mirror: all of it if the facets mirror all, and the part that Schlick's fifth power adds at grazing angles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Albedo {
+    /// Where facets mirror everything.
+    pub(crate) white: f32,
+    /// Where they mirror `(1 - cosine)^5`.
+    pub(crate) grazing: f32,
+}
+
+impl Albedo {
+    /// Of facets that mirror `f0` straight on, and up to white at grazing angles.
+    #[inline]
+    pub(crate) fn of(self, f0: Vec3) -> Vec3 {
+        (self.white - self.grazing) * f0 + Vec3::splat(self.grazing)
+    }
+
+    #[inline]
+    fn blend(self, other: Self, share: f32) -> Self {
+        let blend = |a: f32, b: f32| a + share * (b - a);
+        Self { white: blend(self.white, other.white), grazing: blend(self.grazing, other.grazing) }
+    }
+}
+
+/// The albedos of one roughness, and their mean over all directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Albedos {
+    /// Those of the next smoother and rougher row of the table, and the share of the latter.
+    rows: [&'static AlbedoRow; 2],
+    share: f32,
+}
+
+/// A row of the table.
+#[derive(Debug)]
+struct AlbedoRow {
+    columns: Row<Albedo>,
+    mean: Albedo,
+}
+
+impl Albedos {
+    /// Of a surface of this alpha.
+    #[inline]
+    pub(crate) fn of_roughness(alpha: f32) -> Self {
+        let alpha = if alpha < SMOOTHEST { 0.0 } else { alpha };
+        let (below, share) = between(alpha.sqrt(), ROUGHNESSES);
+        Self { rows: [&TABLE[below], &TABLE[below + 1]], share }
+    }
+
+    /// Seen at an angle of this cosine.
+    #[inline]
+    pub(crate) fn at(&self, cosine: f32) -> Albedo {
+        let (below, share) = between(cosine, COSINES);
+        let [a, b] = self.rows.map(|row| row.columns[below].blend(row.columns[below + 1], share));
+        a.blend(b, self.share)
+    }
+
+    /// The mean over all directions.
+    #[inline]
+    pub(crate) fn mean(&self) -> Albedo {
+        let [a, b] = self.rows.map(|row| row.mean);
+        a.blend(b, self.share)
+    }
+}
+
+/// The last of `count` places from 0 to 1 that is not above a number, and the share of the next.
+#[inline]
+pub(crate) fn between(number: f32, count: usize) -> (usize, f32) {
+    let place = number.clamp(0.0, 1.0) * (count - 1) as f32;
+    let below = (place as usize).min(count - 2);
+    (below, place - below as f32)
+}
+
+/// Twice the integral of `row` times the cosine, over cosines from 0 to 1: the mean over all directions of what is straight between its places.
+pub(crate) fn mean(row: &Row<f32>) -> f32 {
+    let step = 1.0 / (COSINES - 1) as f32;
+    let part = |i: usize| {
+        let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
+        // Simpson's rule, which is exact for what is straight times what is straight.
+        let middle = 0.5 * (row[i] + row[i + 1]) * 0.5 * (a + b);
+        step / 6.0 * (row[i] * a + 4.0 * middle + row[i + 1] * b)
+    };
+    2.0 * (0..COSINES - 1).map(part).sum::<f32>()
+}
+
+/// A direction of a cosine, not quite level.
+pub(crate) fn direction(column: usize) -> Vec3 {
+    let cosine = (column as f32 / (COSINES - 1) as f32).max(1e-4);
+    Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)
+}
+
+/// The alpha of a row of a table.
+pub(crate) fn alpha_of(row: usize) -> f32 {
+    let root = row as f32 / (ROUGHNESSES - 1) as f32;
+    (root * root).max(SMOOTHEST)
+}
+
+/// How many facets stand for all.
+pub(crate) const FACETS: u32 = 256;
+
+/// A row for each roughness; made when it is first asked for, in some milliseconds.
+static TABLE: LazyLock<Vec<AlbedoRow>> =
+    LazyLock::new(|| (0..ROUGHNESSES).map(albedo_row).collect());
+
+fn albedo_row(row: usize) -> AlbedoRow {
+    let albedo = |column| {
+        if row == 0 {
+            let cosine = column as f32 / (COSINES - 1) as f32;
+            return Albedo { white: 1.0, grazing: (1.0 - cosine).powi(5) };
+        }
+        let (ggx, wo) = (Ggx { alpha: alpha_of(row) }, direction(column));
+        let mut sum = Albedo::default();
+        for index in 0..FACETS {
+            let h = ggx.sample_visible(wo, PathSamples::new([0, 0], index).pair(0));
+            let wi = 2.0 * wo.dot(h) * h - wo;
+            if wi.z > 0.0 {
+                let share = ggx.masking_shadowing(wo, wi) / ggx.masking(wo);
+                sum.white += share;
+                sum.grazing += share * (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
+            }
+        }
+        let share = 1.0 / FACETS as f32;
+        Albedo { white: (share * sum.white).min(1.0), grazing: share * sum.grazing }
+    };
+    let columns: Row<Albedo> = std::array::from_fn(albedo);
+    let [white, grazing] = [columns.map(|a| a.white), columns.map(|a| a.grazing)];
+    AlbedoRow { columns, mean: Albedo { white: mean(&white), grazing: mean(&grazing) } }
+}

@@ -1,0 +1,52 @@
+//! How bright a picture should be: light has no scale of its own, and nobody knows beforehand how much of it a room gathers.
+
+use raywood_scene::{Camera, Light, luminance};
+
+use crate::PreparedScene;
+use crate::film::Image;
+use crate::options::{RenderError, RenderOptions};
+use crate::progress::Progress;
+use crate::render::render;
+
+/// The brightness from which on pictures compress light.
+const BRIGHT: f32 = 0.8;
+
+/// The share of pixels that may be brighter.
+const MAY_BE_BRIGHTER: f32 = 0.1;
+
+/// The factor, at most 1, with which nine tenths of the pixels stay below where bright light is compressed: found from a small picture of the same scene, which is the same for
+/// any number of threads.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn exposure_for(
+    scene: &PreparedScene<'_>,
+    camera: &Camera,
+    lights: &[Light],
+    options: &RenderOptions,
+    progress: &Progress,
+) -> Result<f32, RenderError> {
+    const WIDTH: u32 = 64;
+    options.validate()?;
+    let height = u64::from(WIDTH) * u64::from(options.height) / u64::from(options.width);
+    let height = height.clamp(1, u64::from(4 * WIDTH)) as u32;
+    let small = RenderOptions { width: WIDTH, height, samples: 4, ..options.clone() };
+    let (image, _) = render(scene, camera, lights, &small, progress)?;
+    let mut brightness: Vec<f32> = image.pixels().iter().map(|&pixel| luminance(pixel)).collect();
+    brightness.sort_unstable_by(f32::total_cmp);
+    let place = ((1.0 - MAY_BE_BRIGHTER) * brightness.len() as f32) as usize;
+    let bright = brightness[place.min(brightness.len() - 1)];
+    Ok(if bright > BRIGHT && bright.is_finite() { BRIGHT / bright } else { 1.0 })
+}
+
+impl Image {
+    /// The image with so much of its light.
+    #[must_use]
+    pub fn exposed(mut self, factor: f32) -> Self {
+        if factor != 1.0 {
+            self.pixels_mut().iter_mut().for_each(|pixel| *pixel = factor * *pixel);
+        }
+        self
+    }
+}

@@ -1,0 +1,248 @@
+//! Pictures that show something of what each pixel sees first, whatever lights it. What has holes is seen by its share, and what is behind it by the rest.
+
+use std::cell::RefCell;
+
+use raywood::{Hit, HitColumns, Ray, SimdLevel, Vec3};
+use raywood_scene::Rgb;
+
+use super::{Frame, TileRenderer};
+use crate::path_samples::PathSamples;
+use crate::stats::RayCounts;
+use crate::tiles::{Tile, TilePixels};
+use crate::wave::Traced;
+use crate::wave::columns::get;
+use crate::wave::find::FindSurfaces;
+use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::surfaces::Surfaces;
+use crate::wave::textured_surfaces::TextureMemory;
+
+/// What a picture shows, numbers from 0 to 1.
+pub(super) trait Shown: Sync {
+    /// Where nothing is hit.
+    const NOTHING: Rgb;
+
+    /// What it shows of each surface of a wave, of which `colors` has as many places; counts the rays that this takes.
+    fn show(
+        &self,
+        frame: &Frame<'_>,
+        surfaces: &Surfaces,
+        samples: &dyn Fn(usize) -> PathSamples,
+        colors: &mut [Rgb],
+    ) -> RayCounts;
+}
+
+/// A picture of what is seen first.
+pub(super) struct FirstHits<'a, S> {
+    pub(super) frame: &'a Frame<'a>,
+    pub(super) shown: S,
+}
+
+/// The memory that a tile needs.
+#[derive(Default)]
+struct Scratch {
+    primary: PrimaryRays,
+    primary_hits: HitColumns,
+    surfaces: Box<Surfaces>,
+    textures: Box<TextureMemory>,
+    colors: Vec<Rgb>,
+    behind: Behind,
+    wave: Behind,
+    hits: Vec<Option<Hit>>,
+}
+
+/// Rays that go on through holes.
+#[derive(Default)]
+struct Behind {
+    rays: Vec<Ray>,
+    pixels: Vec<Seen>,
+}
+
+/// In which pixel of the tile a ray is seen, by which share, and how long its way was before.
+#[derive(Clone, Copy)]
+struct Seen {
+    pixel: u16,
+    share: f32,
+    travelled: f32,
+}
+
+/// Behind so many holes one after the other everything counts as whole.
+const MOST_HOLES: u32 = 256;
+
+thread_local! {
+    /// Kept from tile to tile, so that none asks for memory.
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+impl<S: Shown> TileRenderer for FirstHits<'_, S> {
+    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
+        SCRATCH.with_borrow_mut(|scratch| self.fill(tile, pixels, scratch))
+    }
+}
+
+impl<S: Shown> FirstHits<'_, S> {
+    fn fill(&self, tile: &Tile, pixels: &mut TilePixels, scratch: &mut Scratch) -> RayCounts {
+        let Frame { scene, camera, options, progress, .. } = self.frame;
+        let level = scene.structure().simd_level().unwrap_or_else(SimdLevel::active);
+        let mut counts = RayCounts::default();
+        for square in tile.squares() {
+            scratch.primary.reset(tile, square, options.samples);
+            for index in 0..options.samples {
+                let Scratch { primary, primary_hits: hits, .. } = &mut *scratch;
+                level.run(SendPrimary { camera, primary, index });
+                let eye = camera.eye();
+                scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+                counts.primary += primary.len() as u64;
+
+                let (primary, hits) = (&scratch.primary, &scratch.primary_hits);
+                let seen = |ray| Seen { pixel: primary.pixel(ray), share: 1.0, travelled: 0.0 };
+                let samples = |pixel| samples_of(tile, pixel, index);
+                let memory = Memory {
+                    surfaces: &mut scratch.surfaces,
+                    textures: &mut scratch.textures,
+                    colors: &mut scratch.colors,
+                    behind: &mut scratch.behind,
+                };
+                let wave = TracedPrimary { eye, primary, hits };
+                counts += self.show(&wave, level, (seen, samples), memory, pixels);
+                counts += self.look_through_holes(tile, index, level, scratch, pixels);
+                if progress.is_cancelled() {
+                    return counts;
+                }
+            }
+        }
+        let samples = options.samples as f32;
+        pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples) * *pixel);
+        counts
+    }
+
+    /// Follows the rays that go on through holes, until none is left.
+    fn look_through_holes(
+        &self,
+        tile: &Tile,
+        index: u32,
+        level: SimdLevel,
+        scratch: &mut Scratch,
+        pixels: &mut TilePixels,
+    ) -> RayCounts {
+        let mut counts = RayCounts::default();
+        for _ in 0..MOST_HOLES {
+            std::mem::swap(&mut scratch.behind, &mut scratch.wave);
+            scratch.behind.clear();
+            let Scratch { wave, hits, surfaces, textures, colors, behind, .. } = &mut *scratch;
+            if wave.rays.is_empty() {
+                break;
+            }
+            hits.resize(wave.rays.len(), None);
+            self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
+            counts.refraction += wave.rays.len() as u64;
+            let wave = TracedBehind { rays: &wave.rays, pixels: &wave.pixels, hits };
+            let memory = Memory { surfaces, textures, colors, behind };
+            let seen = |ray: usize| wave.pixels[ray];
+            let samples = |pixel| samples_of(tile, pixel, index);
+            counts += self.show(&wave, level, (seen, samples), memory, pixels);
+        }
+        scratch.behind.clear();
+        counts
+    }
+
+    /// Adds what is shown of the hits of a wave to their pixels, and has rays wait that go on through holes.
+    fn show(
+        &self,
+        wave: &impl Traced,
+        level: SimdLevel,
+        (seen, samples): (impl Fn(usize) -> Seen, impl Fn(u16) -> PathSamples),
+        memory: Memory<'_>,
+        pixels: &mut TilePixels,
+    ) -> RayCounts {
+        let Memory { surfaces, textures, colors, behind } = memory;
+        let scene = self.frame.scene;
+        let spread = self.frame.spread();
+        let miss = |ray| {
+            let Seen { pixel, share, .. } = seen(ray);
+            pixels[usize::from(pixel)] += share * S::NOTHING;
+        };
+        let surfaces_found = &mut *surfaces;
+        level.run(FindSurfaces {
+            scene,
+            wave,
+            surfaces: surfaces_found,
+            textures,
+            spread,
+            level,
+            miss,
+        });
+
+        colors.clear();
+        colors.resize(surfaces.count(), Rgb::ZERO);
+        let samples_of_surface = |number| samples(seen(surfaces.ray(number)).pixel);
+        let counts = self.shown.show(self.frame, surfaces, &samples_of_surface, colors);
+        for (number, color) in colors.iter().enumerate() {
+            let seen = seen(surfaces.ray(number));
+            let surface = surfaces.get(scene, number);
+            let opacity = surface.material.opacity;
+            pixels[usize::from(seen.pixel)] += (seen.share * opacity) * *color;
+            if opacity < 1.0 {
+                let travelled = seen.travelled + surfaces.distance(number);
+                let ray = surface.point.spawn(get(&surfaces.directions, number));
+                behind.rays.push(ray);
+                behind.pixels.push(Seen { share: (1.0 - opacity) * seen.share, travelled, ..seen });
+            }
+        }
+        counts
+    }
+}
+
+/// The random numbers of sample `index` of a pixel of a tile.
+fn samples_of(tile: &Tile, pixel: u16, index: u32) -> PathSamples {
+    let [column, row] = tile.place(u32::from(pixel));
+    PathSamples::new([column, row], index)
+}
+
+/// Memory for the hits of a wave.
+struct Memory<'a> {
+    surfaces: &'a mut Surfaces,
+    textures: &'a mut TextureMemory,
+    colors: &'a mut Vec<Rgb>,
+    behind: &'a mut Behind,
+}
+
+impl Behind {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.pixels.clear();
+    }
+}
+
+/// Rays through holes that were traced.
+struct TracedBehind<'a> {
+    rays: &'a [Ray],
+    pixels: &'a [Seen],
+    hits: &'a [Option<Hit>],
+}
+
+impl Traced for TracedBehind<'_> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.hits.len()
+    }
+
+    #[inline(always)]
+    fn origin(&self, ray: usize) -> Vec3 {
+        self.rays[ray].origin
+    }
+
+    #[inline(always)]
+    fn direction(&self, ray: usize) -> Vec3 {
+        self.rays[ray].direction
+    }
+
+    #[inline(always)]
+    fn travelled(&self, ray: usize) -> f32 {
+        self.pixels[ray].travelled
+    }
+
+    #[inline(always)]
+    fn hit(&self, ray: usize) -> Option<Hit> {
+        self.hits[ray]
+    }
+}

@@ -1,0 +1,58 @@
+//! Which material and which primitive each pixel sees.
+
+use raywood_scene::Rgb;
+
+use super::first_hits::{FirstHits, Shown};
+use super::{Frame, Integrator};
+use crate::path_samples::PathSamples;
+use crate::sampling::mix;
+use crate::stats::RayCounts;
+use crate::wave::surfaces::Surfaces;
+
+/// The registry's line for this picture.
+pub(super) const INTEGRATOR: Integrator = Integrator {
+    name: "ids",
+    help: "a colour for each material, a shade of it for each triangle",
+    shows_light: false,
+    start: |frame| Box::new(FirstHits { frame, shown: Ids }),
+};
+
+/// Colours made of the numbers of materials, shades of those of primitives.
+struct Ids;
+
+impl Shown for Ids {
+    const NOTHING: Rgb = Rgb::ZERO;
+
+    fn show(
+        &self,
+        frame: &Frame<'_>,
+        surfaces: &Surfaces,
+        _samples: &dyn Fn(usize) -> PathSamples,
+        colors: &mut [Rgb],
+    ) -> RayCounts {
+        for (number, color) in colors.iter_mut().enumerate() {
+            let primitive = surfaces.primitive(number);
+            let hue = material_color(frame.scene.material_index(primitive) as u32);
+            let shade = 0.75 + 0.25 * unit(mix(primitive ^ 0x51ed_270b));
+            *color = shade * hue;
+        }
+        RayCounts::default()
+    }
+}
+
+/// A bright colour for each number, those of the first ones far apart: the hue turns by the golden ratio.
+fn material_color(number: u32) -> Rgb {
+    const TURN: f32 = 0.618_034;
+    let hue = (number as f32 * TURN).fract();
+    let value = if number.is_multiple_of(2) { 1.0 } else { 0.75 };
+    let channel = |shift: f32| {
+        let distance = ((hue + shift).fract() - 0.5).abs();
+        value * (0.25 + 0.75 * (6.0 * distance - 1.0).clamp(0.0, 1.0))
+    };
+    Rgb::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
+}
+
+/// A hash as a number from 0 to 1.
+fn unit(hash: u32) -> f32 {
+    (hash >> 8) as f32 * (1.0 / 16_777_216.0)
+}

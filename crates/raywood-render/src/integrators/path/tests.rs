@@ -1,0 +1,97 @@
+//! What must hold of every way of finding light: all find the same.
+
+use raywood::{Spheres, TriangleMesh, Vec3};
+use raywood_scene::{Background, Camera, Material, MetallicRoughness, Rgb, Scene};
+
+use super::heuristic::Strategy;
+use super::picture::Picture;
+use crate::PreparedScene;
+use crate::camera_rays::CameraRays;
+use crate::integrators::{Frame, TileRenderer};
+use crate::lights::Lights;
+use crate::options::RenderOptions;
+use crate::progress::Progress;
+use crate::tiles::fill_tiles;
+
+fn made_of(metallic: f32, roughness: f32) -> Material {
+    let made_of = MetallicRoughness {
+        base: Rgb::splat(0.7),
+        metallic,
+        roughness,
+        reflectance: Rgb::splat(0.04),
+        transmission: 0.0,
+    };
+    Material { metallic_roughness: Some(made_of), ..Material::default() }
+}
+
+fn lamp(strength: f32) -> Material {
+    Material { diffuse: Rgb::ZERO, emission: Rgb::splat(strength), ..Material::default() }
+}
+
+/// A floor under a square lamp, a ball that shines and one that does not.
+fn stage(floor: Material, lamp_light: f32, ball_light: f32, background: Rgb) -> Scene {
+    let square = |y: f32, s: f32| [[-s, y, s], [s, y, s], [s, y, -s], [-s, y, -s]];
+    let positions = [square(0.0, 4.0), square(2.0, 0.5)].concat();
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let mut scene = Scene {
+        materials: vec![floor, lamp(lamp_light), lamp(ball_light), Material::default()],
+        background: Background { zenith: background, horizon: background, nadir: background },
+        ..Scene::default()
+    };
+    scene.mesh.triangles = TriangleMesh::new(positions, triangles).expect("a mesh");
+    scene.mesh.materials = vec![0, 0, 1, 1];
+    let balls = vec![(Vec3::new(-1.5, 0.9, 0.0), 0.7), (Vec3::new(1.5, 0.5, -0.5), 0.5)];
+    scene.spheres = Spheres::new(balls).expect("spheres");
+    scene.sphere_materials = vec![2, 3];
+    scene
+}
+
+/// The mean of the pixels of a picture of the floor, in light that was scattered once or twice.
+fn light_of_floor(scene: &Scene, strategy: Strategy, samples: u32) -> f64 {
+    let prepared = PreparedScene::new(scene).expect("a tree");
+    // What is asked at the last surface, scattered rays meet a step later.
+    let max_depth = if strategy == Strategy::Scattering { 2 } else { 1 };
+    let options =
+        RenderOptions { width: 16, height: 16, samples, max_depth, ..RenderOptions::default() };
+    let (eye, target) = (Vec3::new(0.0, 1.5, 3.0), Vec3::new(0.0, 0.0, 0.5));
+    let camera = Camera { name: String::new(), eye, target, up: Vec3::Y, fov_y: 30.0 };
+    let progress = Progress::new();
+    let frame = Frame {
+        scene: &prepared,
+        lights: &Lights::default(),
+        camera: CameraRays::new(&camera, 16, 16).expect("a camera"),
+        options: &options,
+        progress: &progress,
+    };
+    let picture = Picture { strategy, ..Picture::new(&frame) };
+    let fill = |tile: &_, pixels: &mut _| picture.render_tile(tile, pixels);
+    let (pixels, _) = fill_tiles((16, 16), Rgb::ZERO, 0, &progress, fill).expect("pixels");
+    pixels.iter().map(|pixel| f64::from(pixel.y)).sum::<f64>() / pixels.len() as f64
+}
+
+/// Asking lights, waiting for scattered rays to meet them, and both together find the same light, on surfaces of every kind, from every kind of light.
+#[test]
+fn all_ways_of_finding_light_agree() {
+    let floors = [
+        made_of(0.0, 1.0),
+        made_of(0.0, 0.3),
+        made_of(1.0, 0.5),
+        made_of(1.0, 0.25),
+        Material::default(),
+    ];
+    let lights = [(4.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 0.5), (3.0, 2.0, 0.25)];
+    for floor in &floors {
+        for (lamp, ball, surroundings) in lights {
+            let scene = stage(floor.clone(), lamp, ball, Rgb::splat(surroundings));
+            let both = light_of_floor(&scene, Strategy::Both, 256);
+            let asked = light_of_floor(&scene, Strategy::Lights, 1024);
+            let met = light_of_floor(&scene, Strategy::Scattering, 4096);
+            let near = |a: f64, b: f64| (a - b).abs() < 0.015 * b;
+            assert!(
+                both > 0.0 && near(both, met) && near(asked, met),
+                "{both} and {asked}, but {met} by chance: {lamp} {ball} {surroundings} {:?}",
+                floor.metallic_roughness
+            );
+        }
+    }
+}

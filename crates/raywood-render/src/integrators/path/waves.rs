@@ -1,0 +1,155 @@
+//! The order in which the rays of a tile are traced.
+
+use raywood::{Hit, HitColumns, SimdLevel};
+
+use super::picture::Picture;
+use super::scatter::Scatterer;
+use super::shadow_rays::ShadowRays;
+use super::walks::{Primary, TracedWalks, Walked, Walks};
+use crate::integrators::Frame;
+use crate::stats::RayCounts;
+use crate::tiles::{Tile, TilePixels};
+use crate::wave::find::FindSurfaces;
+use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::surfaces::Surfaces;
+use crate::wave::textured_surfaces::TextureMemory;
+use crate::wave::{TRACED, WAVE};
+
+/// The memory that a tile needs.
+#[derive(Default)]
+pub(super) struct Scratch {
+    primary: PrimaryRays,
+    primary_hits: HitColumns,
+    waiting: Walks,
+    wave: Walks,
+    hits: Vec<Option<Hit>>,
+    surfaces: Box<Surfaces>,
+    textures: Box<TextureMemory>,
+    shadows: ShadowRays,
+}
+
+/// Follows the paths of a tile, a wave of rays at a time, and adds up the light that they bring.
+pub(super) struct Waves<'a> {
+    picture: &'a Picture<'a>,
+    tile: &'a Tile,
+    pixels: &'a mut TilePixels,
+    counts: RayCounts,
+    /// What loops are compiled for.
+    level: SimdLevel,
+    scratch: &'a mut Scratch,
+}
+
+impl<'a> Waves<'a> {
+    pub(super) fn new(
+        picture: &'a Picture<'a>,
+        tile: &'a Tile,
+        pixels: &'a mut TilePixels,
+        scratch: &'a mut Scratch,
+    ) -> Self {
+        // A picture that was stopped may have left some.
+        scratch.waiting.clear();
+        scratch.shadows.clear();
+        scratch.surfaces.keep_what_all_is_made_of();
+        let structure = picture.frame.scene.structure();
+        let level = structure.simd_level().unwrap_or_else(SimdLevel::active);
+        Self { picture, tile, pixels, counts: RayCounts::default(), level, scratch }
+    }
+
+    /// How many rays were traced.
+    pub(super) fn counts(&self) -> RayCounts {
+        self.counts
+    }
+
+    /// Follows all paths of the tile, if nobody asks to stop.
+    pub(super) fn follow_all(&mut self) {
+        let Frame { options, progress, .. } = self.picture.frame;
+        let samples = options.samples;
+        for square in self.tile.squares() {
+            self.scratch.primary.reset(self.tile, square, samples);
+            for sample in 0..samples {
+                self.trace_primary(sample);
+                while self.scratch.waiting.len() >= TRACED {
+                    self.trace_wave();
+                }
+                if progress.is_cancelled() {
+                    return;
+                }
+            }
+        }
+        while self.scratch.waiting.len() > 0 {
+            self.trace_wave();
+            if progress.is_cancelled() {
+                return;
+            }
+        }
+        let Scratch { shadows, .. } = &mut *self.scratch;
+        shadows.trace(self.picture, 1, self.pixels, &mut self.counts);
+        self.pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples as f32) * *pixel);
+    }
+
+    /// Traces ray `sample` of every pixel of the square, and has the paths scatter.
+    fn trace_primary(&mut self, sample: u32) {
+        let Scratch { primary, primary_hits: hits, .. } = &mut *self.scratch;
+        let Frame { scene, camera, .. } = self.picture.frame;
+        self.counts.primary += primary.len() as u64;
+        self.level.run(SendPrimary { camera, primary, index: sample });
+        let eye = camera.eye();
+        scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+
+        let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, shadows, .. } =
+            &mut *self.scratch;
+        let traced = TracedPrimary { eye, primary, hits };
+        let scatterer = Scatterer {
+            picture: self.picture,
+            tile: self.tile,
+            pixels: self.pixels,
+            counts: &mut self.counts,
+            waiting,
+            shadows,
+        };
+        scatter(scatterer, &Primary { traced, sample }, (surfaces, textures), self.level);
+    }
+
+    /// Traces rays that wait, and has their paths scatter.
+    fn trace_wave(&mut self) {
+        let Scratch { waiting, wave, hits, .. } = &mut *self.scratch;
+        waiting.move_wave(wave);
+        hits.resize(wave.len(), None);
+        self.picture.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
+
+        for first in (0..self.scratch.hits.len()).step_by(WAVE) {
+            let Scratch { waiting, wave, hits, surfaces, textures, shadows, .. } =
+                &mut *self.scratch;
+            let part = first..hits.len().min(first + WAVE);
+            let (rays, walks) = (&wave.rays[part.clone()], &wave.walks[part.clone()]);
+            let traced = TracedWalks { rays, walks, hits: &hits[part] };
+            let scatterer = Scatterer {
+                picture: self.picture,
+                tile: self.tile,
+                pixels: self.pixels,
+                counts: &mut self.counts,
+                waiting,
+                shadows,
+            };
+            scatter(scatterer, &traced, (surfaces, textures), self.level);
+        }
+    }
+}
+
+/// Has the paths of a wave scatter, and traces shadow rays if enough wait.
+fn scatter(
+    mut scatterer: Scatterer<'_>,
+    wave: &impl Walked,
+    (surfaces, textures): (&mut Surfaces, &mut TextureMemory),
+    level: SimdLevel,
+) {
+    let Frame { scene, .. } = scatterer.picture.frame;
+    let spread = scatterer.picture.frame.spread();
+    let (found, miss) = (&mut *surfaces, |ray| scatterer.miss(wave, ray));
+    level.run(FindSurfaces { scene, wave, surfaces: found, textures, spread, level, miss });
+    for number in 0..surfaces.count() {
+        scatterer.scatter(wave, surfaces, number);
+    }
+    let Scatterer { picture, pixels, counts, shadows, .. } = scatterer;
+    shadows.trace(picture, TRACED, pixels, counts);
+}

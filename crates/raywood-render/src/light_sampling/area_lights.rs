@@ -1,0 +1,175 @@
+//! Surfaces that send out light: triangles and spheres, chosen by their power.
+//!
+//! Points of triangles are chosen evenly, of spheres those that are seen, by the cone around them (Shirley, Wang and Zimmerman, "Monte Carlo Techniques
+//! for Direct Lighting Calculations", 1996).
+
+use std::f32::consts::PI;
+
+use raywood::{Hit, Vec3};
+use raywood_scene::luminance;
+
+use super::{AliasTable, LightSample};
+use crate::PreparedScene;
+use crate::prepared::Which;
+use crate::textured::emission_at;
+
+/// All surfaces of a scene that send out light.
+pub(crate) struct AreaLights {
+    primitives: Vec<u32>,
+    table: AliasTable,
+    /// Of each material the probability that a point is chosen, per unit of area; zero of what is dark.
+    densities: Vec<f32>,
+}
+
+/// A point that lies on a light, as it is seen from another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lit {
+    pub(crate) primitive: u32,
+    /// How far away it is.
+    pub(crate) distance: f32,
+    /// The cosine between the way and the surface's normal, at least zero.
+    pub(crate) cosine: f32,
+}
+
+impl AreaLights {
+    /// Those of the scene; `None` if nothing sends out light. O(primitives).
+    pub(crate) fn new(scene: &PreparedScene<'_>) -> Option<Self> {
+        let powers: Vec<f64> = (0..scene.material_count())
+            .map(|material| f64::from(luminance(scene.mean_emission(material))))
+            .collect();
+        if powers.iter().all(|&power| power <= 0.0) {
+            return None;
+        }
+        let mut primitives = Vec::new();
+        let mut weights = Vec::new();
+        for primitive in 0..scene.primitive_count() {
+            let power = powers[scene.material_index(primitive)];
+            let weight = if power > 0.0 { power * area(scene, primitive) } else { 0.0 };
+            if weight > 0.0 {
+                primitives.push(primitive);
+                weights.push(weight);
+            }
+        }
+        let table = AliasTable::new(&weights)?;
+        let densities = powers.iter().map(|power| (power / table.total()) as f32).collect();
+        Some(Self { primitives, table, densities })
+    }
+
+    /// Chooses a point that light comes from to `point`; `None` where it chose one that sends none there. `choice` and `u` are random numbers.
+    pub(crate) fn sample(
+        &self,
+        scene: &PreparedScene<'_>,
+        point: Vec3,
+        choice: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        let primitive = self.primitives[self.table.choose(choice)];
+        let per_area = self.densities[scene.material_index(primitive)];
+        match scene.which(primitive) {
+            Which::Triangle(triangle) => {
+                let [u, v] = even_barycentrics(u);
+                let [p0, p1, p2] = scene.corners(triangle);
+                let target = (1.0 - u - v) * p0 + u * p1 + v * p2;
+                let normal = (p1 - p0).cross(p2 - p0).normalize_or_zero();
+                let way = target - point;
+                let distance = way.length();
+                let direction = way / distance;
+                let cosine = direction.dot(normal).abs();
+                let density = per_area * distance * distance / cosine;
+                let radiance = emission_at(scene, &Hit { t: 0.0, u, v, primitive, instance: 0 });
+                let is_sound = cosine > 0.0 && density > 0.0 && density.is_finite();
+                is_sound.then_some(LightSample {
+                    direction,
+                    target: Some(target),
+                    radiance,
+                    density,
+                })
+            }
+            Which::Sphere(sphere) => {
+                let (center, radius) = scene.scene().spheres.as_slice()[sphere as usize];
+                let radiance = scene.material_of(primitive).emission;
+                let way = center - point;
+                let distance = way.length();
+                let cone = Cone::around(distance, radius)?;
+                let direction = cone.sample(way / distance, u);
+                // Where the cone's ray enters the sphere; at its rim it may just miss.
+                let along = direction.dot(way);
+                let inside = (radius * radius - (distance * distance - along * along)).max(0.0);
+                let target = point + (along - inside.sqrt()) * direction;
+                let density = per_area * 4.0 * PI * radius * radius / cone.solid_angle;
+                let is_sound = density > 0.0 && density.is_finite();
+                is_sound.then_some(LightSample {
+                    direction,
+                    target: Some(target),
+                    radiance,
+                    density,
+                })
+            }
+        }
+    }
+
+    /// The density by solid angle with which [`sample`](Self::sample) chooses a point, as it is seen from another.
+    pub(crate) fn density(&self, scene: &PreparedScene<'_>, lit: Lit) -> f32 {
+        let Lit { primitive, distance, cosine } = lit;
+        let per_area = self.densities[scene.material_index(primitive)];
+        match scene.which(primitive) {
+            Which::Triangle(_) if cosine > 0.0 => per_area * distance * distance / cosine,
+            Which::Triangle(_) => 0.0,
+            Which::Sphere(sphere) => {
+                let (_, radius) = scene.scene().spheres.as_slice()[sphere as usize];
+                // The distance of the centre follows from that of a point and its angle.
+                let squared =
+                    distance * distance + radius * radius + 2.0 * distance * radius * cosine;
+                Cone::around(squared.sqrt(), radius)
+                    .map_or(0.0, |cone| per_area * 4.0 * PI * radius * radius / cone.solid_angle)
+            }
+        }
+    }
+}
+
+/// The cone in which a sphere is seen from outside.
+struct Cone {
+    /// One less the cosine of its half angle.
+    height: f32,
+    solid_angle: f32,
+}
+
+impl Cone {
+    /// `None` from inside or from the surface.
+    fn around(distance: f32, radius: f32) -> Option<Self> {
+        let sin2 = (radius / distance) * (radius / distance);
+        (sin2 < 1.0).then(|| {
+            // Not `1 - cos`, of which nothing is left of what is far away.
+            let height = sin2 / (1.0 + (1.0 - sin2).sqrt());
+            Self { height, solid_angle: 2.0 * PI * height }
+        })
+    }
+
+    /// A direction within it, evenly distributed, around an axis.
+    fn sample(&self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
+        let below = u * self.height;
+        let radius = (below * (2.0 - below)).max(0.0).sqrt();
+        let (sin, cos) = (2.0 * PI * v).sin_cos();
+        let (s, t) = axis.orthonormal_basis();
+        (radius * cos) * s + (radius * sin) * t + (1.0 - below) * axis
+    }
+}
+
+/// Barycentric weights of a point of a triangle, evenly distributed: Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
+fn even_barycentrics([u, v]: [f32; 2]) -> [f32; 2] {
+    if v > u { [0.5 * u, v - 0.5 * u] } else { [u - 0.5 * v, 0.5 * v] }
+}
+
+/// The area of a primitive.
+fn area(scene: &PreparedScene<'_>, primitive: u32) -> f64 {
+    match scene.which(primitive) {
+        Which::Triangle(triangle) => {
+            let [p0, p1, p2] = scene.corners(triangle);
+            0.5 * f64::from((p1 - p0).cross(p2 - p0).length())
+        }
+        Which::Sphere(sphere) => {
+            let (_, radius) = scene.scene().spheres.as_slice()[sphere as usize];
+            4.0 * std::f64::consts::PI * f64::from(radius) * f64::from(radius)
+        }
+    }
+}
