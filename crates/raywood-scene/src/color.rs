@@ -17,6 +17,7 @@ pub fn linear_to_srgb(linear: f32) -> f32 {
 }
 
 /// The brightness that the eye sees in a colour.
+#[inline]
 pub fn luminance(color: Rgb) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }

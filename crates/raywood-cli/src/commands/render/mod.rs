@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "WxH", default_value = "1280x800")]
     size: Size,
 
-    /// How light is followed, or what is shown instead
+    /// How to render, or what to show
     #[arg(
         short,
         long,
@@ -118,7 +118,7 @@ pub(crate) struct Args {
     /// Draw the structure's boxes of a level
     ///
     /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
-    #[arg(long, value_name = "LEVEL")]
+    #[arg(long, value_name = "LEVEL", hide_short_help = true)]
     show_bounds: Option<usize>,
 
     /// Refuse what is otherwise mended
