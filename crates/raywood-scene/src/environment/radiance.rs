@@ -231,7 +231,7 @@ mod tests {
     fn broken_pictures_are_refused_with_their_place() {
         let message = |bytes: &[u8]| decoded(bytes).expect_err("refused");
         let sound = picture("-Y 2 +X 8", &[2, 2, 0, 8, 136, 1, 136, 1, 136, 1, 136, 128]);
-        assert!(message(&sound).contains("byte 66: the picture ends here"), "{}", message(&sound));
+        assert!(message(&sound).contains("byte 64: the picture ends here"), "{}", message(&sound));
         for length in 0..sound.len() {
             message(&sound[..length]);
         }
