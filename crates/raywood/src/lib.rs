@@ -45,6 +45,7 @@
 mod aabb;
 mod build;
 mod bvh;
+mod change;
 mod double;
 mod error;
 mod geometry;
@@ -67,6 +68,7 @@ mod vec3;
 pub use aabb::Aabb;
 pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
+pub use change::RefitError;
 pub use error::BuildError;
 pub use geometry::{
     Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres, SpheresError,

@@ -31,19 +31,19 @@ unsafe impl Plain for [u32; 3] {}
 // SAFETY: three numbers in the order of their declaration, as its layout is that of C.
 unsafe impl Plain for Vec3 {}
 
-/// An array that never changes. Clones share it.
+/// An array that never changes while it is shared. Clones share it.
 pub(crate) struct Array<T> {
     /// In the memory that `owner` holds.
     items: NonNull<[T]>,
     owner: Arc<dyn Any + Send + Sync>,
 }
 
-// SAFETY: what is reached through the pointer is shared and never changed, as of an `Arc<[T]>`.
+// SAFETY: what is reached through the pointer is changed by nobody but who has it alone, as of an `Arc<[T]>`.
 unsafe impl<T: Plain> Send for Array<T> {}
 // SAFETY: as above.
 unsafe impl<T: Plain> Sync for Array<T> {}
 
-// The owner is never looked at, and the items never change: nobody can see them half changed.
+// The owner is never looked at, and the items do not change while anybody looks: numbers, of which any are values.
 impl<T> UnwindSafe for Array<T> {}
 impl<T> RefUnwindSafe for Array<T> {}
 
@@ -71,7 +71,9 @@ impl Array<u8> {
         }
         // SAFETY: so many items lie within the bytes, any bits are values, and they are read without regard to alignment.
         let read = |number: usize| unsafe { start.add(number).read_unaligned() };
-        (0..len).map(read).collect::<Vec<_>>().into()
+        let owner: Arc<Box<[T]>> = Arc::new((0..len).map(read).collect());
+        // No vector: what comes from outside counts as the memory of others, wherever it lies.
+        Array { items: NonNull::from(&owner[..]), owner }
     }
 }
 
@@ -82,14 +84,24 @@ impl<T: Plain> Array<T> {
         unsafe { std::slice::from_raw_parts(self.as_ptr().cast(), size_of_val(&**self)) }
     }
 
+    /// The items, to be changed, if they were made here and nobody shares them.
+    pub(crate) fn get_mut(&mut self) -> Option<&mut [T]> {
+        let owned = Arc::get_mut(&mut self.owner)?.downcast_mut::<Vec<T>>()?;
+        let items = NonNull::from(&mut owned[..]);
+        // What lies within other items is no array of its own.
+        if !std::ptr::eq(items.as_ptr(), self.items.as_ptr()) {
+            return None;
+        }
+        self.items = items;
+        // SAFETY: nobody else has the items, and this array is borrowed for as long as they are.
+        Some(unsafe { self.items.as_mut() })
+    }
+
     /// The items, to be damaged by tests: a copy of them from now on.
     #[cfg(test)]
     pub(crate) fn to_mut(&mut self) -> &mut [T] {
-        let mut copy = self.to_vec();
-        let items = NonNull::from(&mut copy[..]);
-        *self = Self { items, owner: Arc::new(copy) };
-        // SAFETY: nobody else has the copy, and this array is borrowed for as long as the items are.
-        unsafe { self.items.as_mut() }
+        *self = self.to_vec().into();
+        self.get_mut().expect("nobody shares the copy")
     }
 }
 
@@ -98,8 +110,8 @@ impl<T> Deref for Array<T> {
 
     #[inline(always)]
     fn deref(&self) -> &[T] {
-        // SAFETY: the items lie in memory that the owner holds, which is neither moved, as it has a place of its own, nor changed, as nobody but this module
-        // has it, and it is never borrowed again.
+        // SAFETY: the items lie in memory that the owner holds, which is neither moved, as it has a place of its own, nor changed but through
+        // an array that has it alone and is borrowed meanwhile.
         unsafe { self.items.as_ref() }
     }
 }
@@ -152,6 +164,25 @@ mod tests {
         let numbers = [start, start + 1, start + 2, start + 3];
         assert_eq!((odd.len(), odd[0]), (7, u32::from_ne_bytes(numbers)));
         assert_eq!(odd.as_bytes(), &bytes[first + 1..first + 29]);
+    }
+
+    #[test]
+    fn only_what_is_owned_alone_is_changed() {
+        let mut numbers: Array<u32> = vec![1, 2, 3].into();
+        numbers.get_mut().expect("it is owned")[1] = 7;
+        assert_eq!(numbers[..], [1, 7, 3]);
+        let clone = numbers.clone();
+        assert!(numbers.get_mut().is_none());
+        drop(clone);
+        assert!(numbers.get_mut().is_some());
+
+        // Not what comes from outside, copied because it is not aligned or not.
+        let bytes = Array::held_by((0..40).collect::<Vec<u8>>());
+        let first = bytes.as_ptr().align_offset(4);
+        let mut parts: [Array<u32>; 2] =
+            [first, first + 1].map(|first| bytes.within(first..first + 8));
+        drop(bytes);
+        assert!(parts.iter_mut().all(|part| part.get_mut().is_none()));
     }
 
     #[test]

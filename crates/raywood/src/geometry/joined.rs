@@ -36,6 +36,10 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         }
     }
 
+    fn has_sound_bounds(&self) -> bool {
+        self.first.has_sound_bounds() && self.second.has_sound_bounds()
+    }
+
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
         match self.in_second(primitive) {
             None => self.first.clipped_bounds(primitive, cell),
@@ -54,6 +58,13 @@ impl<A: Geometry, B: Geometry> Geometry for Joined<A, B> {
         match self.in_second(primitive) {
             None => self.first.prefetch(primitive),
             Some(primitive) => self.second.prefetch(primitive),
+        }
+    }
+
+    fn prefetch_rest(&self, primitive: u32) {
+        match self.in_second(primitive) {
+            None => self.first.prefetch_rest(primitive),
+            Some(primitive) => self.second.prefetch_rest(primitive),
         }
     }
 

@@ -60,6 +60,12 @@ pub trait Geometry: Sync {
     /// can report.
     fn bounds(&self, primitive: u32) -> Aabb;
 
+    /// Whether all boxes are known to be finite and not empty, so that nobody need look before a tree [takes them on](crate::Bvh::refit). The default
+    /// does not know.
+    fn has_sound_bounds(&self) -> bool {
+        false
+    }
+
     /// A box around the part of the primitive that lies in `cell`; empty if no part does. For structures that divide space.
     ///
     /// It must lie within the primitive's bounds and hold every point that [`intersect`](Self::intersect) can report in the
@@ -78,6 +84,11 @@ pub trait Geometry: Sync {
     /// Asks for what [`bounds`](Self::bounds) and [`triangle`](Self::triangle) will read first of a primitive to be fetched from memory: builds
     /// do so some primitives ahead where these lie all over the memory. It changes nothing but how long that takes. The default does nothing.
     fn prefetch(&self, primitive: u32) {
+        let _ = primitive;
+    }
+
+    /// The same for what they read next, where that follows from what was read first: asked for some time after [`prefetch`](Self::prefetch). The default does nothing.
+    fn prefetch_rest(&self, primitive: u32) {
         let _ = primitive;
     }
 
@@ -166,6 +177,10 @@ impl<G: Geometry + ?Sized> Geometry for &G {
         (**self).bounds(primitive)
     }
 
+    fn has_sound_bounds(&self) -> bool {
+        (**self).has_sound_bounds()
+    }
+
     #[inline(always)]
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
         (**self).clipped_bounds(primitive, cell)
@@ -179,6 +194,11 @@ impl<G: Geometry + ?Sized> Geometry for &G {
     #[inline(always)]
     fn prefetch(&self, primitive: u32) {
         (**self).prefetch(primitive);
+    }
+
+    #[inline(always)]
+    fn prefetch_rest(&self, primitive: u32) {
+        (**self).prefetch_rest(primitive);
     }
 
     fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {

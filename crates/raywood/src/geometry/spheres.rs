@@ -135,6 +135,11 @@ impl Geometry for Spheres {
             && f64::from(radius) - slack <= dot(far, far).sqrt()
     }
 
+    fn has_sound_bounds(&self) -> bool {
+        // Checked when they were made.
+        true
+    }
+
     #[inline]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
         // The near crossing if it counts, else the far one: the ray may start inside.

@@ -42,6 +42,13 @@ pub enum MeshError {
         /// How many there are in all.
         count: usize,
     },
+    /// Another number of positions than the mesh has whose triangles are kept.
+    PositionCount {
+        /// How many it has.
+        before: usize,
+        /// How many there are now.
+        now: usize,
+    },
     /// More than 2^31 triangles.
     TooManyTriangles {
         /// How many there are.
@@ -63,6 +70,9 @@ impl fmt::Display for MeshError {
                     f,
                     "{count} vertices are NaN or infinite, the first of them is vertex {first}"
                 )
+            }
+            Self::PositionCount { before, now } => {
+                write!(f, "{now} positions for a mesh of {before} vertices")
             }
             Self::TooManyTriangles { triangles } => {
                 write!(f, "{triangles} triangles, but a mesh holds at most 2147483648")
@@ -96,11 +106,7 @@ impl TriangleMesh {
             return Err(MeshError::TooManyTriangles { triangles: triangles.len() });
         }
 
-        let count = positions.iter().filter(|p| !p.is_finite()).count();
-        if count > 0 {
-            let first = positions.iter().position(|p| !p.is_finite()).unwrap_or_default();
-            return Err(MeshError::NotFinite { first, count });
-        }
+        check_finite(&positions)?;
 
         let in_range = |index: u32| (index as usize) < positions.len();
         if let Some(triangle) = triangles.iter().position(|t| !t.iter().all(|&i| in_range(i))) {
@@ -108,6 +114,21 @@ impl TriangleMesh {
             return Err(MeshError::IndexOutOfRange { triangle, index, positions: positions.len() });
         }
         Ok(Self { positions, triangles })
+    }
+
+    /// The same triangles with their vertices elsewhere, for [`Bvh::refit`](crate::Bvh::refit). O(vertices): indices are shared with this mesh and not looked at again.
+    ///
+    /// # Errors
+    ///
+    /// Another number of positions, or one that is NaN or infinite.
+    pub fn with_positions<P: Into<Vec3>>(&self, positions: Vec<P>) -> Result<Self, MeshError> {
+        let (before, now) = (self.positions.len(), positions.len());
+        if before != now {
+            return Err(MeshError::PositionCount { before, now });
+        }
+        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
+        check_finite(&positions)?;
+        Ok(Self { positions: positions.into(), triangles: self.triangles.clone() })
     }
 
     /// Positions and triangles as the bytes that they are in memory.
@@ -145,6 +166,17 @@ impl TriangleMesh {
     }
 }
 
+/// Refuses positions that are NaN or infinite.
+fn check_finite(positions: &[Vec3]) -> Result<(), MeshError> {
+    match positions.iter().filter(|p| !p.is_finite()).count() {
+        0 => Ok(()),
+        count => {
+            let first = positions.iter().position(|p| !p.is_finite()).unwrap_or_default();
+            Err(MeshError::NotFinite { first, count })
+        }
+    }
+}
+
 impl Geometry for TriangleMesh {
     fn len(&self) -> usize {
         self.triangles.len()
@@ -154,6 +186,11 @@ impl Geometry for TriangleMesh {
     fn bounds(&self, primitive: u32) -> Aabb {
         let [a, b, c] = self.corners(primitive);
         Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    }
+
+    fn has_sound_bounds(&self) -> bool {
+        // Corners are finite, as was checked when it was made.
+        true
     }
 
     fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
@@ -168,6 +205,13 @@ impl Geometry for TriangleMesh {
     #[inline(always)]
     fn prefetch(&self, primitive: u32) {
         prefetch_item(&self.triangles, primitive as usize);
+    }
+
+    #[inline(always)]
+    fn prefetch_rest(&self, primitive: u32) {
+        if let Some(corners) = self.triangles.get(primitive as usize) {
+            corners.iter().for_each(|&corner| prefetch_item(&self.positions, corner as usize));
+        }
     }
 
     fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {

@@ -5,7 +5,9 @@ use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use super::claims::Claims;
 use super::huge_pages;
+use crate::parallel;
 use crate::storage::{Array, Plain};
 
 /// Plain numbers that fill whole cache lines.
@@ -23,10 +25,16 @@ unsafe impl Lines for crate::geometry::TriangleBlock {}
 /// A cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-struct Line([u32; 16]);
+pub(super) struct Line([u32; 16]);
 
 // SAFETY: sixteen numbers, as large as a cache line.
 unsafe impl Plain for Line {}
+
+// SAFETY: sixteen numbers, as large as a cache line.
+unsafe impl Lines for Line {}
+
+/// So many lines a thread copies at a time.
+const PIECE: usize = 1 << 14;
 
 /// Things of whole cache lines. What is found under a number is of the kind that is asked for, if only in bits.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,6 +74,28 @@ impl Arena {
         let lines = &self.0[line..line + size_of::<T>() / 64];
         // SAFETY: the lines are as large as the thing and as well aligned, and any bits are numbers.
         unsafe { &*lines.as_ptr().cast() }
+    }
+
+    /// Whether the lines were made here and nobody shares them, so that they can be changed.
+    pub(crate) fn is_alone(&mut self) -> bool {
+        self.0.get_mut().is_some()
+    }
+
+    /// All lines, to be changed, if they were made here and nobody shares them; else none.
+    pub(crate) fn claims(&mut self) -> Option<Claims<'_>> {
+        self.0.get_mut().map(Claims::of)
+    }
+
+    /// A copy that nobody shares, made in parallel.
+    pub(crate) fn copied(&self) -> Self {
+        let filled = Self::filled(self.len(), |mut all| {
+            let pieces = self.0.chunks(PIECE);
+            let tasks = pieces.map(|lines| (all.take(lines.len()), lines)).collect();
+            parallel::map_tasks(tasks, |(mut part, lines): (Part<'_>, &[Line])| {
+                lines.iter().for_each(|&line| part.put(line));
+            });
+        });
+        filled.map_or_else(Self::default, |(copy, _)| copy)
     }
 
     /// The same, to be damaged by tests.

@@ -14,6 +14,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod bit_places;
+mod claims;
 pub(crate) mod huge_pages;
 mod level;
 mod portable;
@@ -24,8 +25,9 @@ mod vectorized;
 mod tests;
 
 use crate::Ray;
-pub(crate) use arena::{Arena, ArenaInMaking, Part};
+pub(crate) use arena::{Arena, ArenaInMaking, Lines, Part};
 pub(crate) use bit_places::BitPlaces;
+pub(crate) use claims::Claims;
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
 pub(crate) use vector::{Float, Simd};
@@ -42,14 +44,20 @@ pub(crate) fn as_rows(rays: &[Ray; 16]) -> &[[f32; 8]; 16] {
 /// Asks for the cache line of an item to be fetched soon; of one that is not there, for nothing.
 #[inline(always)]
 pub(crate) fn prefetch_item<T>(items: &[T], place: usize) {
+    prefetch_address(items.as_ptr().wrapping_add(place).cast());
+}
+
+/// Asks for a cache line to be fetched soon; where there is no memory, for nothing.
+#[inline(always)]
+fn prefetch_address(address: *const u8) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: a prefetch reads nothing, whatever the address, and every x86-64 processor has it.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(items.as_ptr().wrapping_add(place).cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (items, place);
+    let _ = address;
 }
 
 /// Work that is compiled for every level.

@@ -121,6 +121,11 @@ impl Bvh2 {
         (self.nodes, self.primitive_indices)
     }
 
+    /// Nodes, of which boxes may be changed, and indices.
+    pub(crate) fn nodes_mut(&mut self) -> (&mut [Node], &[u32]) {
+        (&mut self.nodes, &self.primitive_indices)
+    }
+
     /// All nodes; the first is the root.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes

@@ -12,6 +12,7 @@ mod kd_tree;
 mod octree;
 mod overlap;
 mod packets;
+mod refit;
 mod reinsertion;
 mod saved_forgeries;
 mod saved_trees;

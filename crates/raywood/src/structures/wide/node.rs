@@ -107,6 +107,11 @@ impl Reference {
         ((2 << less_one) - 1) << first
     }
 
+    /// The same leaf, with primitives that are no triangles or without.
+    pub(super) fn mixed_if(self, mixed: bool) -> Self {
+        Self(self.0 & !(1 << 4) | u32::from(mixed) << 4)
+    }
+
     /// Whether a leaf has primitives that are no triangles.
     #[inline(always)]
     pub(super) fn is_mixed(self) -> bool {

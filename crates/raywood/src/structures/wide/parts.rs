@@ -53,6 +53,11 @@ impl Parts {
         &self.bits
     }
 
+    /// The same, out of this, which has none then.
+    pub(super) fn take_bits(&mut self) -> Vec<u64> {
+        std::mem::take(&mut self.bits)
+    }
+
     /// By how much boxes count as larger for a ray that starts at `origin`: nothing where the [margin](part_margin) that the boxes of parts already have is enough.
     #[inline(always)]
     pub(super) fn margin(&self, origin: Vec3) -> f32 {

@@ -1,0 +1,8 @@
+//! Trees that change with their geometry: new boxes for primitives that moved, parts built anew, or everything, as quality asks for.
+
+mod refit;
+mod refit_binary;
+mod refit_error;
+
+pub(crate) use refit::check_primitives;
+pub use refit_error::RefitError;
