@@ -68,7 +68,7 @@ mod vec3;
 pub use aabb::Aabb;
 pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
-pub use change::RefitError;
+pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
 pub use error::BuildError;
 pub use geometry::{
     Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres, SpheresError,

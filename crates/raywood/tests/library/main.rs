@@ -4,6 +4,7 @@ mod all_hits;
 mod bounding_balls;
 mod closest_point;
 mod conformance;
+mod dynamic;
 mod forest;
 mod grids;
 mod hit_options;

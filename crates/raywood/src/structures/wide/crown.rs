@@ -2,6 +2,7 @@
 //! became bad. Which these are depends on the tree alone.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use super::WideBvh;
 use super::node::Reference;
@@ -18,6 +19,8 @@ pub(super) struct Crown {
     pub(super) limbs: Vec<Limb>,
     /// In the order in which they were come to.
     pub(super) boughs: Vec<Bough>,
+    /// The leaves that are children of limbs, limb by limb.
+    pub(super) twigs: Vec<Parent>,
 }
 
 /// A node near the root.
@@ -26,6 +29,8 @@ pub(super) struct Limb {
     pub(super) line: usize,
     /// `None` of the root.
     pub(super) parent: Option<Parent>,
+    /// Where its leaves stand among the twigs.
+    pub(super) twigs: Range<usize>,
 }
 
 /// A subtree.
@@ -41,7 +46,7 @@ pub(super) struct Bough {
 impl Crown {
     /// That of a tree: nodes are opened level by level until there are enough subtrees.
     pub(super) fn of(tree: &WideBvh) -> Self {
-        let mut limbs = Vec::new();
+        let (mut limbs, mut twigs) = (Vec::new(), Vec::new());
         let mut open = VecDeque::new();
         if tree.root != Reference::NOTHING && !tree.root.is_leaf() {
             open.push_back((tree.root.line(), None, 0));
@@ -50,18 +55,27 @@ impl Crown {
             && let Some((line, parent, depth)) = open.pop_front()
         {
             let children = tree.node(Reference::node(line)).children.map(Reference);
+            let first_twig = twigs.len();
             for (lane, child) in children.into_iter().enumerate() {
-                if child != Reference::NOTHING && !child.is_leaf() {
-                    open.push_back((child.line(), Some((limbs.len(), lane)), depth + 1));
+                let own = (limbs.len(), lane);
+                match child {
+                    Reference::NOTHING => {}
+                    leaf if leaf.is_leaf() => twigs.push(own),
+                    node => open.push_back((node.line(), Some(own), depth + 1)),
                 }
             }
-            limbs.push(Limb { line, parent });
+            limbs.push(Limb { line, parent, twigs: first_twig..twigs.len() });
         }
         // The root is opened first, so that all that is left has a parent.
         let bough = |(line, parent, depth): (usize, Option<Parent>, usize)| {
             parent.map(|parent| Bough { line, parent, depth })
         };
         let boughs = open.into_iter().filter_map(bough).collect();
-        Self { limbs, boughs }
+        Self { limbs, boughs, twigs }
+    }
+
+    /// Where the subtrees that can be cut off are referred to: the boughs, then the twigs.
+    pub(super) fn cuttings(&self) -> impl Iterator<Item = Parent> {
+        self.boughs.iter().map(|bough| bough.parent).chain(self.twigs.iter().copied())
     }
 }

@@ -41,16 +41,23 @@ impl WideNode {
 
     /// The children that are there, with their boxes.
     pub(super) fn children(&self) -> impl Iterator<Item = (Aabb, Reference)> {
-        let corner = |side: usize, lane: usize| {
-            let [x, y, z] = [0, 1, 2].map(|axis| self.planes[axis][side][lane]);
-            Vec3::new(x, y, z)
-        };
         (0..WIDTH)
-            .map(move |lane| {
-                let bounds = Aabb { min: corner(0, lane), max: corner(1, lane) };
-                (bounds, Reference(self.children[lane]))
-            })
+            .map(|lane| (self.bounds(lane), Reference(self.children[lane])))
             .filter(|(_, child)| *child != Reference::NOTHING)
+    }
+
+    /// The box around all children.
+    pub(super) fn around(&self) -> Aabb {
+        self.children().map(|(bounds, _)| bounds).fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// The box of the child in a lane.
+    #[inline(always)]
+    pub(super) fn bounds(&self, lane: usize) -> Aabb {
+        let [x, y, z] = &self.planes;
+        let min = Vec3::new(x[0][lane], y[0][lane], z[0][lane]);
+        let max = Vec3::new(x[1][lane], y[1][lane], z[1][lane]);
+        Aabb { min, max }
     }
 }
 
@@ -99,12 +106,23 @@ impl Reference {
         (self.0 >> 1 & 7) as usize + 1
     }
 
+    /// How many primitives a leaf refers to, and a node none.
+    #[inline(always)]
+    pub(super) fn references(self) -> usize {
+        if self.is_leaf() { self.count() } else { 0 }
+    }
+
     /// The lanes of a leaf's block that hold primitives.
     #[inline(always)]
     pub(super) fn lanes(self) -> u32 {
         let less_one = self.0 >> 1 & 7;
         let first = (7 - less_one) & (0u32.wrapping_sub(self.0 >> 5 & 1));
         ((2 << less_one) - 1) << first
+    }
+
+    /// The same leaf in the block from another line on.
+    pub(super) fn at(self, line: usize) -> Self {
+        Self(self.0 & 63 | (line as u32) << 6)
     }
 
     /// The same leaf, with primitives that are no triangles or without.

@@ -4,6 +4,7 @@
 use super::WideBvh;
 use super::cost::Cost;
 use super::crown::{Bough, Crown};
+use super::measure::Measured;
 use super::node::{Reference, WIDTH, WideNode};
 use super::parts::Parts;
 use super::step::lanes;
@@ -23,20 +24,12 @@ pub(super) struct Fitted {
     pub(super) below: Cost,
 }
 
-/// What is known of a tree after its boxes were made anew.
-pub(crate) struct Refitted {
-    /// The expected cost `Q` of a ray through all of it.
-    pub(crate) cost: f64,
-    /// The expected cost of a ray that meets the box of each bough, in their order.
-    pub(crate) boughs: Vec<f64>,
-}
-
 impl WideBvh {
     /// Takes on the places that primitives have now. On an error nothing has changed.
     pub(crate) fn refit_measured<G: Geometry>(
         &mut self,
         geometry: &G,
-    ) -> Result<Refitted, RefitError> {
+    ) -> Result<Measured, RefitError> {
         check_primitives(geometry, self.primitives as usize)?;
         let crown = Crown::of(self);
         // What others see stays as it is, and so does what comes from outside: there may be lines that are referred to twice.
@@ -47,8 +40,8 @@ impl WideBvh {
         let arena = copy.as_mut().unwrap_or(&mut self.arena);
         let claims = arena.claims().ok_or(RefitError::NotATree { line: 0 })?;
         let refit = Refit { geometry, claims: &claims };
-        let (root, bounds, below, boughs) = match self.root {
-            Reference::NOTHING => return Ok(Refitted { cost: 0.0, boughs: Vec::new() }),
+        let (root, bounds, below, cuttings) = match self.root {
+            Reference::NOTHING => return Ok(Measured { cost: 0.0, cuttings: Vec::new() }),
             leaf if leaf.is_leaf() => {
                 let mut above = WideNode::EMPTY;
                 above.children[0] = leaf.0;
@@ -56,14 +49,14 @@ impl WideBvh {
                 (Reference(above.children[0]), fitted.bounds, Cost::default(), Vec::new())
             }
             node => {
-                let (fitted, boughs) = refit.crown(&crown)?;
-                (node, fitted.bounds, fitted.below, boughs)
+                let (fitted, cuttings) = refit.crown(&crown)?;
+                (node, fitted.bounds, fitted.below, cuttings)
             }
         };
 
         let bounds = Aabb::from(bounds);
         let mut cost = below;
-        cost.add(bounds.half_area(), if root.is_leaf() { root.count() } else { 0 });
+        cost.add(bounds.half_area(), root.references());
         if let Some(copy) = copy {
             self.arena = copy;
         }
@@ -71,7 +64,7 @@ impl WideBvh {
         self.bounds = bounds;
         self.reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         self.parts = Parts::from_bits(self.parts.take_bits(), &bounds);
-        Ok(Refitted { cost: cost.within(&bounds), boughs })
+        Ok(Measured { cost: cost.within(&bounds), cuttings })
     }
 }
 
@@ -85,9 +78,9 @@ struct Refit<'r, 'a, G> {
 }
 
 impl<'a, G: Geometry> Refit<'_, 'a, G> {
-    /// Refits all of a tree. Also tells what a ray costs that meets the box of each bough.
+    /// Refits all of a tree. Also tells what each bough and each twig adds to its cost.
     fn crown(&self, crown: &Crown) -> Result<(Fitted, Vec<f64>), RefitError> {
-        let Crown { limbs, boughs } = crown;
+        let Crown { limbs, boughs, twigs } = crown;
         let fit = |&Bough { line, depth, .. }: &Bough| self.node(line, depth);
         let fitted: Result<Vec<_>, _> =
             parallel::map_pieces(boughs, 1, |bough| fit(&bough[0])).into_iter().collect();
@@ -99,9 +92,15 @@ impl<'a, G: Geometry> Refit<'_, 'a, G> {
             waiting[limb].push((lane, fitted));
         }
         let mut whole = Fitted { bounds: PackedAabb::EMPTY, below: Cost::default() };
+        let mut twig_costs = vec![Cost::default(); twigs.len()];
         for (place, limb) in limbs.iter().enumerate().rev() {
-            let node = self.take(limb.line)?;
+            let node: &mut WideNode = self.take(limb.line)?;
             whole = self.leaves(node)?;
+            for twig in limb.twigs.clone() {
+                let (_, lane) = twigs[twig];
+                let references = Reference(node.children[lane]).references();
+                twig_costs[twig].add(node.bounds(lane).half_area(), references);
+            }
             for (lane, fitted) in waiting[place].drain(..) {
                 whole.put(node, lane, &fitted);
             }
@@ -109,7 +108,13 @@ impl<'a, G: Geometry> Refit<'_, 'a, G> {
                 waiting[parent].push((lane, whole));
             }
         }
-        let costs = fitted.iter().map(|bough| bough.cost()).collect();
+        let boughs = fitted.iter().map(|bough| {
+            let mut cost = bough.below;
+            cost.add(bough.bounds.half_area(), 0);
+            cost
+        });
+        let bounds = Aabb::from(whole.bounds);
+        let costs = boughs.chain(twig_costs).map(|cost| cost.within(&bounds)).collect();
         Ok((whole, costs))
     }
 
@@ -208,12 +213,5 @@ impl Fitted {
         self.below.add_all(&child.below);
         self.below.add(child.bounds.half_area(), 0);
         node.set(lane, &child.bounds.into(), Reference(node.children[lane]));
-    }
-
-    /// The expected cost of a ray that meets its box.
-    fn cost(&self) -> f64 {
-        let mut cost = self.below;
-        cost.add(self.bounds.half_area(), 0);
-        cost.within(&self.bounds.into())
     }
 }

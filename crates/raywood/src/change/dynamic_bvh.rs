@@ -1,0 +1,168 @@
+//! A tree that follows a geometry which changes from picture to picture, and looks after its own quality. When a tree is to be built anew follows Lauterbach, Yoon, Tuft and
+//! Manocha, "RT-DEFORM: Interactive Ray Tracing of Dynamic Scenes using BVHs", 2006: not after so many pictures, but when the cost by the surface area heuristic has grown.
+
+use super::{Decision, RefitError, Update, UpdateOptions};
+use crate::structures::AccelerationStructure;
+use crate::structures::wide::Measured;
+use crate::{BuildError, Bvh, Geometry, SimdLevel, WideBvh};
+
+/// A [`Bvh`] over a geometry that changes.
+///
+/// [`update`](Self::update) does what is needed to follow it: most often new boxes, which takes a twentieth of the time of a build; where the tree has become bad in places, these are built
+/// anew; and all of it, if it is bad in general or there are other primitives. What it has decided by which numbers it tells.
+///
+/// ```
+/// use raywood::{Decision, DynamicBvh, Ray, TriangleMesh};
+///
+/// let mesh = TriangleMesh::new(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])?;
+/// let mut scene = DynamicBvh::build(mesh)?;
+/// for step in 1..4 {
+///     let x = step as f32;
+///     let moved = scene.bvh().geometry().with_positions(vec![[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]])?;
+///     let update = scene.update(moved)?;
+///     assert_eq!(update.decision, Decision::Refitted);
+///     assert!(scene.bvh().occluded(&Ray::new([x + 0.2, 0.2, 1.0], [0.0, 0.0, -1.0])));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Rays in other threads
+///
+/// An update takes the tree for itself (`&mut self`), so no batch of rays sees one half changed. Who wants to trace the last picture while the next is prepared clones the
+/// [`Bvh`], which shares memory instead of copying it: `let snapshot = Arc::new(scene.bvh().clone())`. As long as a snapshot lives, updates leave its memory alone and make their
+/// own; once the last is dropped they change the tree in place again. Two trees that take turns never copy.
+#[derive(Clone, Debug)]
+pub struct DynamicBvh<G> {
+    bvh: Bvh<G>,
+    options: UpdateOptions,
+    /// What the tree cost when it was last built, and what was added to that by parts when these were.
+    built: Measured,
+}
+
+impl<G: Geometry> DynamicBvh<G> {
+    /// Builds the tree with good defaults.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build`].
+    pub fn build(geometry: G) -> Result<Self, BuildError> {
+        Self::build_with(geometry, UpdateOptions::default())
+    }
+
+    /// Builds the tree with the given options.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build`].
+    pub fn build_with(geometry: G, options: UpdateOptions) -> Result<Self, BuildError> {
+        let bvh = Bvh::build_with(geometry, &options.build)?;
+        let built = bvh.tree().measured();
+        Ok(Self { bvh, options, built })
+    }
+
+    /// The tree with its geometry and all queries.
+    pub fn bvh(&self) -> &Bvh<G> {
+        &self.bvh
+    }
+
+    /// The tree, no longer looked after.
+    pub fn into_bvh(self) -> Bvh<G> {
+        self.bvh
+    }
+
+    /// Has other vector instructions trace the tree, as [`Bvh::set_simd_level`] does, also after it is built anew.
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.bvh.set_simd_level(level);
+    }
+
+    /// How it is decided what to do.
+    pub fn options(&self) -> &UpdateOptions {
+        &self.options
+    }
+
+    /// Puts a geometry in the place of the one before, and has the tree follow. Hits are those of a tree that is built over it, whatever is decided.
+    ///
+    /// O(N) in parallel in the caller's rayon pool for new boxes and the measurement that goes with them; O(N) and O(k log k) for `k` primitives in subtrees that are built anew; O(N log N)
+    /// for all of them. The decision, and the tree, is the same for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bvh::build`]. Of a geometry with a box that is empty or not finite nothing is taken on. If memory is too short to build anew, or not allowed, the tree has taken on
+    /// the geometry with new boxes alone if there are as many primitives as before; else it stays as it was.
+    pub fn update(&mut self, geometry: G) -> Result<Update, BuildError> {
+        let refitted = match self.bvh.tree.refit_measured(&geometry) {
+            Ok(refitted) => refitted,
+            Err(RefitError::BadBounds { primitive, bounds }) => {
+                return Err(BuildError::BadBounds { primitive, bounds });
+            }
+            // Other primitives, or a tree that was never one.
+            Err(_) => {
+                self.bvh.tree = self.built_over(&geometry)?;
+                self.bvh.geometry = geometry;
+                return Ok(self.rebuilt(f64::INFINITY));
+            }
+        };
+        self.bvh.geometry = geometry;
+        let update = |decision, cost| Update {
+            decision,
+            built_cost: self.built.cost,
+            refitted_cost: refitted.cost,
+            cost,
+        };
+        if refitted.cost <= self.limit(self.built.cost) {
+            return Ok(update(Decision::Refitted, refitted.cost));
+        }
+        if let Some((tree, decision)) = self.repaired(&refitted)? {
+            let measured = tree.measured();
+            if measured.cost <= self.limit(self.built.cost) {
+                let update = update(decision, measured.cost);
+                self.bvh.tree = tree;
+                self.built.cuttings = measured.cuttings;
+                return Ok(update);
+            }
+        }
+        self.bvh.tree = self.built_over(&self.bvh.geometry)?;
+        Ok(self.rebuilt(refitted.cost))
+    }
+
+    /// How much may be expected of what cost so much when it was built.
+    fn limit(&self, built: f64) -> f64 {
+        // What is not a number allows nothing beyond.
+        self.options.max_growth.max(1.0) * built
+    }
+
+    /// The tree with what is in the parts that have become too bad built anew; `None` if that is too much.
+    fn repaired(&self, refitted: &Measured) -> Result<Option<(WideBvh, Decision)>, BuildError> {
+        let (tree, geometry) = (&self.bvh.tree, &self.bvh.geometry);
+        let costs = refitted.cuttings.iter().zip(&self.built.cuttings);
+        // Less is allowed to each than to the whole, or what is left of all of them would soon be too much.
+        let limit = self.limit(1.0).sqrt();
+        let chosen: Vec<_> = costs.map(|(now, built)| *now > limit * built).collect();
+        let subtrees = chosen.iter().filter(|is_chosen| **is_chosen).count();
+        let primitives = tree.primitives_in(&chosen);
+        let share = primitives.len() as f64 / geometry.len() as f64;
+        // Of a limit that is no number nothing is allowed.
+        let is_allowed = share <= self.options.max_repair_share;
+        if subtrees == 0 || !is_allowed {
+            return Ok(None);
+        }
+        let decision = Decision::Repaired { subtrees, primitives: primitives.len() };
+        let options = &self.options.build;
+        let repaired = tree.with_new_bough(geometry, (&chosen, &primitives), options)?;
+        Ok(repaired.map(|tree| (tree, decision)))
+    }
+
+    /// A new tree, traced by the same instructions.
+    fn built_over(&self, geometry: &G) -> Result<WideBvh, BuildError> {
+        let mut tree = WideBvh::build(geometry, &self.options.build)?;
+        tree.set_simd_level(self.bvh.simd_level());
+        Ok(tree)
+    }
+
+    /// What is told of a tree that was built anew just now.
+    fn rebuilt(&mut self, refitted_cost: f64) -> Update {
+        self.built = self.bvh.tree.measured();
+        let cost = self.built.cost;
+        Update { decision: Decision::Rebuilt, built_cost: cost, refitted_cost, cost }
+    }
+}
