@@ -96,7 +96,9 @@ impl Aabb {
         if self.is_empty() {
             return 0.0;
         }
-        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]));
+        // Not `map`, which the compiler does not always inline.
+        let edge = |axis: usize| f64::from(self.max[axis]) - f64::from(self.min[axis]);
+        let (x, y, z) = (edge(0), edge(1), edge(2));
         x * y + y * z + z * x
     }
 }

@@ -1,5 +1,6 @@
 //! Scenes of instances: a tree over trees, each of which stands at many places.
 
+mod change;
 mod error;
 mod place;
 mod point;
@@ -87,6 +88,8 @@ pub struct Tlas<B = Bvh<TriangleMesh>> {
 struct Built<B> {
     placements: Vec<Placement<B>>,
     tree: TopTree,
+    /// What the tree cost when it was built; it may have new boxes since.
+    built_cost: f64,
     /// How far beside their boxes rays may hit instances.
     margin: BoundsMargin,
     /// How many instances there are on the lowest level.
@@ -95,13 +98,7 @@ struct Built<B> {
 
 impl<B> Clone for Built<B> {
     fn clone(&self) -> Self {
-        let Self { placements, tree, margin, leaves } = self;
-        Self {
-            placements: placements.clone(),
-            tree: tree.clone(),
-            margin: *margin,
-            leaves: *leaves,
-        }
+        Self { placements: self.placements.clone(), tree: self.tree.clone(), ..*self }
     }
 }
 
@@ -125,38 +122,13 @@ impl<B: Traceable> Tlas<B> {
         instances: Vec<Instance<B>>,
         options: &BuildOptions,
     ) -> Result<Self, InstanceError> {
-        let built = place::build(&instances, options)?;
+        let built = place::place(&instances)?.build(options)?;
         Ok(Self { instances, options: options.clone(), level: SimdLevel::active(), built })
     }
 
     /// The instances.
     pub fn instances(&self) -> &[Instance<B>] {
         &self.instances
-    }
-
-    /// Moves an instance, which counts from the next [`rebuild`](Self::rebuild) on.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such instance.
-    pub fn set_transform(&mut self, instance: usize, transform: Transform) {
-        self.instances[instance].transform = transform;
-    }
-
-    /// All instances, to be changed: which counts from the next [`rebuild`](Self::rebuild) on.
-    pub fn instances_mut(&mut self) -> &mut Vec<Instance<B>> {
-        &mut self.instances
-    }
-
-    /// Builds the top-level tree anew over the instances as they are now, with the options of the first time. As nothing else can use the scene meanwhile, all rays of a batch
-    /// see the same.
-    ///
-    /// # Errors
-    ///
-    /// As [`build`](Self::build); queries then still see the scene as it was.
-    pub fn rebuild(&mut self) -> Result<(), InstanceError> {
-        self.built = place::build(&self.instances, &self.options)?;
-        Ok(())
     }
 
     /// The box around everything; empty if there is nothing.

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use super::transform::{Inverse, RAY_ERROR};
 use super::{
@@ -31,11 +32,19 @@ impl<B> Clone for Placement<B> {
     }
 }
 
-/// Makes all instances ready and builds the tree over them.
-pub(super) fn build<B: Traceable>(
-    instances: &[Instance<B>],
-    options: &BuildOptions,
-) -> Result<Built<B>, InstanceError> {
+/// Instances made ready, before there is a tree over them.
+pub(super) struct Placed<B> {
+    pub(super) placements: Vec<Placement<B>>,
+    /// The box around each, empty where there is nothing.
+    pub(super) boxes: Vec<Aabb>,
+    /// How far beside their boxes rays may hit instances.
+    pub(super) margin: BoundsMargin,
+    /// How many instances there are on the lowest level.
+    pub(super) leaves: u32,
+}
+
+/// Makes all instances ready. O(N), in parallel.
+pub(super) fn place<B: Traceable>(instances: &[Instance<B>]) -> Result<Placed<B>, InstanceError> {
     // Numbers first: instances of scenes count as many as are in them.
     let (mut leaves, mut firsts) = (0, Vec::with_capacity(instances.len()));
     for instance in instances {
@@ -49,47 +58,51 @@ pub(super) fn build<B: Traceable>(
         return Err(InstanceError::TooManyInstances { instances: instances.len() });
     }
 
-    let place = |number: usize| place(&instances[number], firsts[number], number);
-    let placed: Result<Vec<_>, _> = parallel::map(instances.len(), place).into_iter().collect();
+    // Results would be copied twice until it is known whether all are good: so it is only remembered which is the first that is not.
+    let first_bad = AtomicUsize::new(usize::MAX);
+    let placements = parallel::map(instances.len(), |number| {
+        let Instance { object, transform, mask, id: _ } = &instances[number];
+        let inverse = transform.inverse().unwrap_or_else(|_| {
+            first_bad.fetch_min(number, Relaxed);
+            Inverse::NONE
+        });
+        let (object, first) = (Arc::clone(object), firsts[number]);
+        Placement { inverse, mask: *mask, first, object, transform: *transform }
+    });
+    let instance = first_bad.into_inner();
+    if let Some(Err(error)) = instances.get(instance).map(|bad| bad.transform.inverse()) {
+        return Err(InstanceError::BadTransform { instance, error });
+    }
+
+    let around = parallel::map(placements.len(), |number| placements[number].around());
     let mut margin = BoundsMargin::NONE;
-    let (mut placements, mut boxes) = (Vec::with_capacity(instances.len()), Vec::new());
-    for (number, (placement, bounds, own_margin)) in placed?.into_iter().enumerate() {
+    for (instance, &(bounds, own_margin)) in around.iter().enumerate() {
         if !bounds.is_empty() {
-            boxes.push((number as u32, bounds));
+            if !bounds.is_finite() {
+                return Err(InstanceError::BadBounds { instance, bounds });
+            }
             margin = margin.max(own_margin);
         }
-        placements.push(placement);
     }
-    let tree = top_tree(boxes, options)?;
-    Ok(Built { placements, tree, margin, leaves: leaves as u32 })
+    let boxes = around.into_iter().map(|(bounds, _)| bounds).collect();
+    Ok(Placed { placements, boxes, margin, leaves: leaves as u32 })
 }
 
-/// An instance made ready, with the box around it and how far beside that rays may hit it.
-fn place<B: Traceable>(
-    instance: &Instance<B>,
-    first: u32,
-    number: usize,
-) -> Result<(Placement<B>, Aabb, BoundsMargin), InstanceError> {
-    let Instance { object, transform, mask, id: _ } = instance;
-    let inverse = transform
-        .inverse()
-        .map_err(|error| InstanceError::BadTransform { instance: number, error })?;
-    let mut bounds = object.bounds();
-    if !bounds.is_empty() {
-        bounds = transform.bounds(&bounds);
-        if !bounds.is_finite() {
-            return Err(InstanceError::BadBounds { instance: number, bounds });
-        }
+impl<B: Traceable> Placed<B> {
+    /// With a tree over the boxes that are not empty.
+    pub(super) fn build(self, options: &BuildOptions) -> Result<Built<B>, InstanceError> {
+        let boxes = (0..).zip(&self.boxes).filter(|(_, bounds)| !bounds.is_empty());
+        let boxes = boxes.map(|(number, &bounds)| (number, bounds)).collect();
+        let tree = top_tree(boxes, options)?;
+        let built_cost = tree.cost();
+        Ok(self.under(tree, built_cost))
     }
 
-    // What rounding moves a ray in the object's space, and what a ray there may pass beside the object's box, both as the world sees it.
-    let (inner, distance) = (object.bounds_margin(), inverse.distance());
-    let inner_share = inner.share * transform.stretch() * inverse.stretch() * ROUNDED;
-    let inner_length = inner.length * transform.stretch() * ROUNDED;
-    let share = RAY_ERROR * transform.condition(&inverse) + inner_share;
-    let margin = BoundsMargin { share, length: share * distance + inner_length };
-    let object = Arc::clone(object);
-    Ok((Placement { inverse, mask: *mask, first, object, transform: *transform }, bounds, margin))
+    /// With this tree, which cost so much when it was built.
+    pub(super) fn under(self, tree: TopTree, built_cost: f64) -> Built<B> {
+        let Self { placements, boxes: _, margin, leaves } = self;
+        Built { placements, tree, built_cost, margin, leaves }
+    }
 }
 
 /// What origins of rays may be larger by when they are rounded, and to spare.
@@ -143,6 +156,22 @@ fn top_tree(boxes: Vec<(u32, Aabb)>, options: &BuildOptions) -> Result<TopTree, 
 const REINSERTION_PASSES: usize = 4;
 
 impl<B: Traceable> Placement<B> {
+    /// The box around the instance, empty if there is nothing, and how far beside that rays may hit it.
+    fn around(&self) -> (Aabb, BoundsMargin) {
+        let Self { object, transform, inverse, .. } = self;
+        let bounds = object.bounds();
+        if bounds.is_empty() {
+            return (Aabb::EMPTY, BoundsMargin::NONE);
+        }
+        // What rounding moves a ray in the object's space, and what a ray there may pass beside the object's box, both as the world sees it.
+        let (inner, distance) = (object.bounds_margin(), inverse.distance());
+        let inner_share = inner.share * transform.stretch() * inverse.stretch() * ROUNDED;
+        let inner_length = inner.length * transform.stretch() * ROUNDED;
+        let share = RAY_ERROR * inverse.condition + inner_share;
+        let margin = BoundsMargin { share, length: share * distance + inner_length };
+        (transform.bounds(&bounds), margin)
+    }
+
     /// The closest hit with the instance up to a limit, which lies in the scene's units.
     #[inline(always)]
     fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {

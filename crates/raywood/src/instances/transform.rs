@@ -116,8 +116,17 @@ impl Transform {
     }
 
     /// The rows of the matrix.
+    #[inline(always)]
     fn linear(&self) -> [Double3; 3] {
-        self.rows.map(|[a, b, c, _]| [f64::from(a), f64::from(b), f64::from(c)])
+        // Neither here nor below `map`, which the compiler does not always inline: scenes in which everything moves ask for thousands of inverses a picture.
+        let row = |row: usize| [self.entry(row, 0), self.entry(row, 1), self.entry(row, 2)];
+        [row(0), row(1), row(2)]
+    }
+
+    /// A coefficient.
+    #[inline(always)]
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        f64::from(self.rows[row][column])
     }
 
     /// The way back, if there is one.
@@ -127,30 +136,41 @@ impl Transform {
         }
         // The cofactors: differences of products that are exact, so each is right but for one rounding. The rows of the adjugate are the cofactors' columns.
         let linear = self.linear();
-        let cofactors = [0, 1, 2].map(|i| cross(linear[(i + 1) % 3], linear[(i + 2) % 3]));
-        let determinant = dot(linear[0], cofactors[0]);
-        let columns = cofactors.map(|column| column.map(|number| number / determinant));
-        let inverse = Inverse { columns, from: self.rows.map(|row| f64::from(row[3])) };
-        let condition = self.condition(&inverse);
+        let [a, b, c] = linear;
+        let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant = dot(a, cofactors[0]);
+        let column = |[x, y, z]: Double3| [x / determinant, y / determinant, z / determinant];
+        let [a, b, c] = cofactors;
+        let columns = [column(a), column(b), column(c)];
+        let from = [self.entry(0, 3), self.entry(1, 3), self.entry(2, 3)];
+        let mut inverse = Inverse { columns, from, condition: 0.0 };
+        inverse.condition = self.condition(&inverse);
         // NaN, too, is no condition.
-        if condition <= WORST_CONDITION { Ok(inverse) } else { Err(TransformError::Singular) }
+        if inverse.condition <= WORST_CONDITION {
+            Ok(inverse)
+        } else {
+            Err(TransformError::Singular)
+        }
     }
 
     /// How much larger rounding errors may become on the way there and back: the greatest sum of a row of `|A| |A^-1|`. From 1 to 3 for rotations and any scaling
     /// along the axes.
-    pub(super) fn condition(&self, inverse: &Inverse) -> f64 {
+    fn condition(&self, inverse: &Inverse) -> f64 {
         let sum_of = |row: Double3| {
             // Column k of the inverse, weighted by the row.
-            let entry = |k: usize| dot(row.map(f64::abs), inverse.columns[k].map(f64::abs));
+            let entry = |k: usize| dot(absolute(row), absolute(inverse.columns[k]));
             entry(0) + entry(1) + entry(2)
         };
-        let sums = self.linear().map(sum_of);
+        let [a, b, c] = self.linear();
+        let sums = [sum_of(a), sum_of(b), sum_of(c)];
         if sums.iter().any(|sum| sum.is_nan()) { f64::NAN } else { largest(sums) }
     }
 
     /// The greatest sum of a row of `|A|`: how much longer a coordinate may become.
     pub(super) fn stretch(&self) -> f64 {
-        largest(self.linear().map(|row| row[0].abs() + row[1].abs() + row[2].abs()))
+        let sum = |[x, y, z]: Double3| x.abs() + y.abs() + z.abs();
+        let [a, b, c] = self.linear();
+        largest([sum(a), sum(b), sum(c)])
     }
 
     /// A box around a transformed one, which is not empty: rounded outwards, and larger by what rounding of rays that are taken the other way moves points inside.
@@ -185,6 +205,12 @@ const BOX_ERROR: f64 = f32::EPSILON as f64;
 /// The same in terms of the distance between the ray's origin and the instance's, times the transform's [condition](Transform::condition): two roundings, and one to spare.
 pub(super) const RAY_ERROR: f64 = 1.5 * f32::EPSILON as f64;
 
+/// The magnitudes.
+#[inline(always)]
+fn absolute([x, y, z]: Double3) -> Double3 {
+    [x.abs(), y.abs(), z.abs()]
+}
+
 /// The largest of three numbers, none of which is NaN.
 pub(super) fn largest(v: Double3) -> f64 {
     v[0].max(v[1]).max(v[2])
@@ -197,6 +223,8 @@ pub(super) struct Inverse {
     columns: [Double3; 3],
     /// Where the object's origin lies.
     from: Double3,
+    /// The [condition](Transform::condition) of the transform.
+    pub(super) condition: f64,
 }
 
 /// A ray in an object's space.
@@ -220,6 +248,9 @@ impl ObjectRay {
 const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
 
 impl Inverse {
+    /// In place of one that does not exist.
+    pub(super) const NONE: Self = Self { columns: [[0.0; 3]; 3], from: [0.0; 3], condition: 0.0 };
+
     /// A valid ray as the object sees it. Its origin and direction are rounded once.
     #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
@@ -245,12 +276,13 @@ impl Inverse {
     /// The greatest sum of a row of `|A^-1|`.
     pub(super) fn stretch(&self) -> f64 {
         let [a, b, c] = &self.columns;
-        largest([0, 1, 2].map(|i| a[i].abs() + b[i].abs() + c[i].abs()))
+        let sum = |i: usize| a[i].abs() + b[i].abs() + c[i].abs();
+        largest([sum(0), sum(1), sum(2)])
     }
 
     /// The largest coordinate of the place of the object's origin.
     pub(super) fn distance(&self) -> f64 {
-        largest(self.from.map(f64::abs))
+        largest(absolute(self.from))
     }
 }
 

@@ -10,6 +10,7 @@ mod grids;
 mod hit_options;
 mod instances;
 mod kd_tree;
+mod moving_instances;
 mod octree;
 mod overlap;
 mod packets;

@@ -4,6 +4,7 @@
 
 use std::ops::ControlFlow;
 
+use super::cost::Cost;
 use super::node::{WIDTH, WideNode};
 use super::slabs::{Slabs, end_of_keys};
 use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
@@ -34,47 +35,64 @@ impl TopTree {
     pub(crate) fn of(tree: &Bvh2, entry: impl Fn(u32) -> u32) -> Self {
         let bounds = tree.bounds();
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let mut top = Self { nodes: Vec::new(), depth: 0, reach, bounds };
-        if !tree.nodes().is_empty() {
-            top.nodes.reserve(tree.nodes().len() / WIDTH);
-            top.depth = top.add(tree, 0, &entry);
-        } else {
-            top.reach = 0.0;
+        if tree.nodes().is_empty() {
+            return Self { nodes: Vec::new(), depth: 0, reach: 0.0, bounds };
         }
-        top
+        let area = bounds.half_area();
+        let per_area = if area > 0.0 { 1.0 / area } else { 0.0 };
+        let nodes = Vec::with_capacity(tree.nodes().len() / WIDTH);
+        let mut growth = Growth { tree, entry, per_area, nodes };
+        let depth = growth.add(0);
+        Self { nodes: growth.nodes, depth, reach, bounds }
     }
 
-    /// Adds the wide node of a node of the binary tree and all below it; returns how many lie on the longest way down.
-    fn add(&mut self, tree: &Bvh2, number: usize, entry: &impl Fn(u32) -> u32) -> usize {
-        let nodes = tree.nodes();
-        // Open the largest, again and again.
-        let mut children = [(number, f64::INFINITY); WIDTH];
-        let mut count = 1;
-        while count < WIDTH {
-            let interior = |child: &(usize, &(usize, f64))| !nodes[child.1.0].is_leaf();
-            let largest = children[..count].iter().enumerate().filter(interior);
-            let Some((place, _)) = largest.max_by(|a, b| a.1.1.total_cmp(&b.1.1)) else { break };
-            let left = nodes[children[place].0].left_first() as usize;
-            let child = |number: usize| (number, nodes[number].bounds().half_area());
-            (children[place], children[count]) = (child(left), child(left + 1));
-            count += 1;
+    /// Takes on other boxes of the same entries, by their numbers, those empty that are no entries; every box is made anew from the last node to the first. `None`, and nothing
+    /// changes, if other entries have boxes than before. O(N).
+    pub(crate) fn refit(&mut self, boxes: &[Aabb]) -> Option<()> {
+        let entries = || {
+            self.nodes
+                .iter()
+                .flat_map(|node| node.children)
+                .filter(|item| item & 1 == 1 && *item != END)
+        };
+        let is_there =
+            |item: u32| boxes.get((item >> 1) as usize).is_some_and(|bounds| !bounds.is_empty());
+        let expected = boxes.iter().filter(|bounds| !bounds.is_empty()).count();
+        if entries().count() != expected || !entries().all(is_there) {
+            return None;
         }
+        // Children come after their parents.
+        for number in (0..self.nodes.len()).rev() {
+            for lane in 0..WIDTH {
+                let item = self.nodes[number].children[lane];
+                let place = (item >> 1) as usize;
+                if item != END {
+                    let bounds =
+                        if item & 1 == 1 { boxes[place] } else { self.nodes[place].around() };
+                    self.nodes[number].set_item(lane, &bounds, item);
+                }
+            }
+        }
+        self.bounds = self.nodes.first().map_or(Aabb::EMPTY, WideNode::around);
+        self.reach = match self.nodes.is_empty() {
+            true => 0.0,
+            false => self.bounds.min.abs().max(self.bounds.max.abs()).max_element(),
+        };
+        Some(())
+    }
 
-        let own = self.nodes.len();
-        self.nodes.push(WideNode::EMPTY);
-        let mut deepest = 0;
-        for (lane, &(number, _)) in children[..count].iter().enumerate() {
-            let node = &nodes[number];
-            let item = if node.is_leaf() {
-                2 * entry(tree.leaf_primitives(node)[0]) + 1
-            } else {
-                let below = self.nodes.len();
-                deepest = deepest.max(self.add(tree, number, entry));
-                2 * below as u32
-            };
-            self.nodes[own].set_item(lane, &node.bounds(), item);
+    /// The expected cost `Q` of a ray through it, an entry counted as a leaf of one primitive. O(N).
+    pub(crate) fn cost(&self) -> f64 {
+        let mut cost = Cost::default();
+        if !self.nodes.is_empty() {
+            cost.add(self.bounds.half_area(), 0);
         }
-        1 + deepest
+        for node in &self.nodes {
+            for (bounds, item) in node.children() {
+                cost.add(bounds.half_area(), (item.0 & 1) as usize);
+            }
+        }
+        cost.within(&self.bounds)
     }
 
     /// The box around everything; empty if there is nothing.
@@ -100,6 +118,63 @@ impl TopTree {
     ) {
         let limit = if limit < ray.t_max { limit } else { ray.t_max };
         dispatch_on(level, Walk { tree: self, ray, margin, limit, visit });
+    }
+}
+
+/// A tree that is being made.
+struct Growth<'a, E> {
+    /// The binary tree that it is made from.
+    tree: &'a Bvh2,
+    /// What each primitive leads to.
+    entry: E,
+    /// One by half the surface of the box around everything; zero if that has none.
+    per_area: f64,
+    nodes: Vec<WideNode>,
+}
+
+impl<E: Fn(u32) -> u32> Growth<'_, E> {
+    /// Adds the wide node of a node of the binary tree and all below it; returns how many lie on the longest way down.
+    fn add(&mut self, number: usize) -> usize {
+        let nodes = self.tree.nodes();
+        // Open the largest, again and again. As numbers of which the greatest is found by vectors: the bits of the area as a share of the whole but for the last four, in which the
+        // lane stands. Leaves cannot be opened.
+        let key = |number: usize, lane: usize| match nodes[number].is_leaf() {
+            true => i32::MIN,
+            false => {
+                let share = (nodes[number].bounds().half_area() * self.per_area) as f32;
+                share.to_bits() as i32 & !(WIDTH as i32 - 1) | lane as i32
+            }
+        };
+        let (mut children, mut keys) = ([number; WIDTH], [i32::MIN; WIDTH]);
+        keys[0] = key(number, 0);
+        let mut count = 1;
+        while count < WIDTH {
+            let greatest = keys.iter().fold(i32::MIN, |greatest, &key| greatest.max(key));
+            if greatest == i32::MIN {
+                break;
+            }
+            let place = greatest as usize % WIDTH;
+            let left = nodes[children[place]].left_first() as usize;
+            (children[place], children[count]) = (left, left + 1);
+            (keys[place], keys[count]) = (key(left, place), key(left + 1, count));
+            count += 1;
+        }
+
+        let own = self.nodes.len();
+        self.nodes.push(WideNode::EMPTY);
+        let mut deepest = 0;
+        for (lane, &number) in children[..count].iter().enumerate() {
+            let node = &nodes[number];
+            let item = if node.is_leaf() {
+                2 * (self.entry)(self.tree.leaf_primitives(node)[0]) + 1
+            } else {
+                let below = self.nodes.len();
+                deepest = deepest.max(self.add(number));
+                2 * below as u32
+            };
+            self.nodes[own].set_item(lane, &node.bounds(), item);
+        }
+        1 + deepest
     }
 }
 
