@@ -4,7 +4,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use raywood::{BuildPreset, Builder, Bvh, Bvh2, TriangleMesh, Vec3};
+use raywood::{
+    BuildOptions, BuildPreset, Builder, Bvh, Bvh2, DynamicBvh, TriangleMesh, UpdateOptions, Vec3,
+};
 use raywood_scene::{LoadOptions, load_file};
 
 const ROUNDS: usize = 31;
@@ -55,8 +57,42 @@ fn main() {
                 println!("{threads} threads, {name:24} {median:8.2} ms, least {least:.2}");
             }
             println!("Q {:.3}, waved {:.3}", costs[0], costs[1]);
+            decide(&mesh, &options);
         });
     }
+}
+
+/// What is decided, and how long that takes, for poses that are worse and worse.
+fn decide(mesh: &TriangleMesh, options: &BuildOptions) {
+    let options = UpdateOptions { build: options.clone(), ..Default::default() };
+    let mut scene = DynamicBvh::build_with(mesh.clone(), options).expect("it builds");
+    for share in [0.0, 0.02, 0.1, 1.0] {
+        let mut times = Vec::new();
+        let mut update = None;
+        for _ in 0..5 {
+            scene =
+                DynamicBvh::build_with(mesh.clone(), scene.options().clone()).expect("it builds");
+            let pose = torn(mesh, share);
+            times.push(milliseconds(|| update = Some(scene.update(pose).expect("it is taken on"))));
+        }
+        times.sort_by(f64::total_cmp);
+        let update = update.expect("there are rounds");
+        println!("{:3.0} % torn: {update}, in {:.1} ms", 100.0 * share, times[2]);
+    }
+}
+
+/// The mesh with such a share of its vertices, those with the least x, at each other's places.
+fn torn(mesh: &TriangleMesh, share: f64) -> TriangleMesh {
+    let mut positions = mesh.positions().to_vec();
+    let mut order: Vec<_> = (0..positions.len()).collect();
+    order.sort_by(|&a, &b| positions[a].x.total_cmp(&positions[b].x));
+    order.truncate((share * positions.len() as f64) as usize);
+    let mut state = 1u64;
+    for last in (1..order.len()).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        positions.swap(order[last], order[(state >> 33) as usize % (last + 1)]);
+    }
+    mesh.with_positions(positions).expect("finite")
 }
 
 /// The mesh with all vertices moved by waves, which are as high as such a share of its size.

@@ -26,6 +26,7 @@
 //! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be.
+//! - What moves need not be built anew: [`Bvh::refit`] makes new boxes, [`DynamicBvh`] looks after the quality of the tree as well, and [`Tlas::update`] does for instances.
 //! - A tree can be [saved](Bvh::save) with its mesh and [loaded](Bvh::load) where it lies in memory, or [with more](SavedTree): a mapped file of a million triangles answers its first ray within milliseconds.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can

@@ -45,6 +45,14 @@ fn shuffled(soup: &TriangleMesh, seed: u64, is_moved: impl Fn(Vec3) -> bool) -> 
 fn check(scene: &DynamicBvh<TriangleMesh>, name: &str) {
     let bvh = scene.bvh();
     bvh.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+    // What is checked when a tree is loaded holds of it too, and how deep it is is known.
+    let mut file = Vec::new();
+    bvh.save(&mut file).expect("it is saved");
+    let loaded = Bvh::load(file).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(loaded.stats() == bvh.stats(), "{name}");
+    if scene.bvh().simd_level() == loaded.simd_level() {
+        assert!(loaded.tree() == bvh.tree(), "{name}");
+    }
     let fresh = Bvh::build(bvh.geometry().clone()).expect("it builds");
     for (number, ray) in rays::against(bvh.geometry(), 400, 1).iter().enumerate() {
         let hit = bvh.intersect(ray);

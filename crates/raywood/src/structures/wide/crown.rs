@@ -1,4 +1,4 @@
-//! A wide tree as a crown and boughs: the nodes near the root, and the subtrees below them, which are pieces of work for threads and what is built anew where a part of the tree
+//! A wide tree as a crown and boughs: the nodes near the root, and the subtrees below them: pieces of work for threads, and what can be cut off where a part of the tree
 //! became bad. Which these are depends on the tree alone.
 
 use std::collections::VecDeque;
@@ -7,7 +7,7 @@ use std::ops::Range;
 use super::WideBvh;
 use super::node::Reference;
 
-/// So many boughs are enough for any number of threads that we care about, and small enough to be built anew one by one.
+/// So many boughs are enough for dozens of threads, and small enough that little besides is built anew where a part became bad.
 const BOUGHS: usize = 256;
 
 /// Where a node is referred to: the place of the limb that does, and the lane in it.
@@ -31,6 +31,13 @@ pub(super) struct Limb {
     pub(super) parent: Option<Parent>,
     /// Where its leaves stand among the twigs.
     pub(super) twigs: Range<usize>,
+}
+
+impl Limb {
+    /// The reference to it.
+    pub(super) fn reference(&self) -> Reference {
+        Reference::node(self.line)
+    }
 }
 
 /// A subtree.

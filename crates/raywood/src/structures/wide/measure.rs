@@ -29,7 +29,7 @@ impl WideBvh {
 
         let below = below.into_iter().chain(crown.twigs.iter().map(|_| Cost::default()));
         let cost = |((limb, lane), mut cost): (Parent, Cost)| {
-            let node = self.node(Reference::node(crown.limbs[limb].line));
+            let node = self.node(crown.limbs[limb].reference());
             cost.add(node.bounds(lane).half_area(), Reference(node.children[lane]).references());
             cost.within(&self.bounds)
         };

@@ -20,6 +20,7 @@ mod node;
 mod packet;
 pub(crate) mod pairs;
 pub(crate) mod parts;
+mod pruned;
 mod refit;
 mod repair;
 mod saved;

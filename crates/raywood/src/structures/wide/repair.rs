@@ -3,13 +3,14 @@
 
 use super::WideBvh;
 use super::collapse::NODE_LINES;
-use super::crown::{Bough, Crown, Limb};
+use super::crown::Crown;
 use super::gathered::Gathered;
-use super::graft::{Graft, copy_blocks, own_lines};
-use super::node::{Reference, WIDTH, WideNode};
+use super::graft::Graft;
+use super::node::{Reference, WideNode};
+use super::pruned::Pruned;
 use crate::simd::{Arena, Part};
 use crate::structures::MAX_DEPTH;
-use crate::{Aabb, BuildError, BuildOptions, Geometry, parallel};
+use crate::{BuildError, BuildOptions, Geometry, parallel};
 
 impl WideBvh {
     /// The primitives in those boughs and twigs that are chosen, in order, each once.
@@ -17,7 +18,7 @@ impl WideBvh {
         let crown = Crown::of(self);
         let mut primitives = Vec::new();
         for ((limb, lane), _) in crown.cuttings().zip(chosen).filter(|(_, is_chosen)| **is_chosen) {
-            let node = self.node(Reference::node(crown.limbs[limb].line));
+            let node = self.node(crown.limbs[limb].reference());
             self.collect(Reference(node.children[lane]), &mut primitives);
         }
         primitives.sort_unstable();
@@ -52,129 +53,43 @@ impl WideBvh {
         let options = BuildOptions { spatial_splits: 0.0, memory_limit: None, ..options.clone() };
         let new = Self::build(&Gathered::of(geometry, primitives), &options)?;
         let mut pruned = Pruned::of(self, chosen);
-        if pruned.nodes[0].children().next().is_none() {
+        if pruned.bounds().is_empty() {
             return Ok(None);
         }
 
         // Beside the children of the root if there is room, else beside the root.
-        let free = (0..WIDTH).find(|&lane| pruned.nodes[0].children[lane] == Reference::NOTHING.0);
-        let above = free.is_none().then(|| {
-            let mut above = WideNode::EMPTY;
-            above.set(0, &pruned.nodes[0].around(), Reference::NOTHING);
-            above
-        });
-        let grafts: Vec<_> = pruned.boughs.iter().map(|bough| bough.line).collect();
-        let mut grafts = parallel::map_pieces(&grafts, 1, |line| Graft::below(self, line[0]));
+        let free = pruned.free_lane();
+        let old = pruned.bounds();
+        let mut grafts =
+            parallel::map_pieces(&pruned.boughs, 1, |bough| Graft::below(self, bough[0].line));
         grafts.push(Graft::whole(&new, primitives));
-        let lines = pruned.lines() + grafts.iter().map(|graft| graft.lines).sum::<usize>();
-        let lines = lines + if above.is_some() { NODE_LINES } else { 0 };
+        let above = if free.is_some() { 0 } else { NODE_LINES };
+        let lines = above + pruned.lines() + grafts.iter().map(|graft| graft.lines).sum::<usize>();
         if lines > Reference::LINES {
             return Ok(None);
         }
         let filled = Arena::filled(lines, |mut all| {
-            let top = above.map(|node| (node, all.take(NODE_LINES)));
-            let places = pruned.take_places(&mut all);
+            let mut above = all.take(above);
+            let places = pruned.copy_twigs(self, &mut all);
             let tasks: Vec<_> = grafts.iter().map(|graft| (graft, all.take(graft.lines))).collect();
-            let mut copied = parallel::map_tasks(tasks, |(graft, part): (&Graft<'_>, Part<'_>)| {
-                graft.copy(part)
-            });
+            let copy = |(graft, part): (&Graft<'_>, Part<'_>)| graft.copy(part);
+            let mut copied = parallel::map_tasks(tasks, copy);
             let (new_root, new_depth) = copied.pop().unwrap_or((Reference::NOTHING, 0));
-            let old_depth = pruned.refer_to(&copied, &places);
-            let old_root = Reference::node(places[0].first());
+            let (old_root, old_depth) = pruned.refer_to(&copied, &places);
             if let Some(lane) = free {
-                pruned.nodes[0].set(lane, &new.bounds, new_root);
+                pruned.add_below_root(lane, &new.bounds, new_root);
+                pruned.put(places);
+                return (old_root, old_depth.max(1 + new_depth));
             }
-            pruned.put(self, places);
-            match top {
-                None => (old_root, old_depth.max(1 + new_depth)),
-                Some((mut node, mut place)) => {
-                    node.children[0] = old_root.0;
-                    node.set(1, &new.bounds, new_root);
-                    let root = Reference::node(place.first());
-                    place.put(node);
-                    (root, 1 + old_depth.max(new_depth))
-                }
-            }
+            pruned.put(places);
+            let mut node = WideNode::EMPTY;
+            node.set(0, &old, old_root);
+            node.set(1, &new.bounds, new_root);
+            let root = Reference::node(above.first());
+            above.put(node);
+            (root, 1 + old_depth.max(new_depth))
         });
         let Some((arena, (root, depth))) = filled else { return Ok(None) };
         Ok((depth <= MAX_DEPTH).then(|| Self { root, depth, arena, ..self.clone() }))
-    }
-}
-
-/// The limbs of a tree after boughs were cut off.
-struct Pruned {
-    limbs: Vec<Limb>,
-    /// The limbs' nodes as they are then. One without children is not needed any more.
-    nodes: Vec<WideNode>,
-    /// The boughs that are left.
-    boughs: Vec<Bough>,
-}
-
-impl Pruned {
-    /// Cuts boughs and twigs off a tree.
-    fn of(tree: &WideBvh, chosen: &[bool]) -> Self {
-        let crown = Crown::of(tree);
-        let nodes = crown.limbs.iter().map(|limb| *tree.node(Reference::node(limb.line)));
-        let mut nodes: Vec<_> = nodes.collect();
-        for ((limb, lane), _) in crown.cuttings().zip(chosen).filter(|(_, is_chosen)| **is_chosen) {
-            nodes[limb].set(lane, &Aabb::EMPTY, Reference::NOTHING);
-        }
-        let Crown { limbs, boughs, .. } = crown;
-        // Children come after their parents, so from the last to the first.
-        for (place, limb) in limbs.iter().enumerate().rev() {
-            let Some((parent, lane)) = limb.parent else { continue };
-            let bounds = nodes[place].around();
-            let is_left = nodes[place].children().next().is_some();
-            let reference = if is_left { Reference::node(limb.line) } else { Reference::NOTHING };
-            nodes[parent].set(lane, &bounds, reference);
-        }
-        let boughs = boughs.into_iter().zip(chosen).filter(|(_, is_chosen)| !**is_chosen);
-        let boughs = boughs.map(|(bough, _)| bough).collect();
-        Self { limbs, nodes, boughs }
-    }
-
-    /// How many lines a limb takes with the blocks of its leaves.
-    fn lines_of(node: &WideNode) -> usize {
-        if node.children().next().is_some() { own_lines(node) } else { 0 }
-    }
-
-    /// How many lines all limbs take.
-    fn lines(&self) -> usize {
-        self.nodes.iter().map(Self::lines_of).sum()
-    }
-
-    /// A place for each limb.
-    fn take_places<'a>(&self, all: &mut Part<'a>) -> Vec<Part<'a>> {
-        self.nodes.iter().map(|node| all.take(Self::lines_of(node))).collect()
-    }
-
-    /// Has the limbs refer to each other at their places, and to the boughs at theirs. Tells how many nodes lie on the longest way down.
-    fn refer_to(&mut self, boughs: &[(Reference, usize)], places: &[Part<'_>]) -> usize {
-        let mut depths = vec![1; self.limbs.len()];
-        for (number, limb) in self.limbs.iter().enumerate() {
-            let Some((parent, lane)) = limb.parent else { continue };
-            depths[number] = depths[parent] + 1;
-            let reference = &mut self.nodes[parent].children[lane];
-            if *reference != Reference::NOTHING.0 {
-                *reference = Reference::node(places[number].first()).0;
-            }
-        }
-        for (bough, &(root, depth)) in self.boughs.iter().zip(boughs) {
-            let (limb, lane) = bough.parent;
-            self.nodes[limb].children[lane] = root.0;
-            depths.push(bough.depth + depth);
-        }
-        depths.into_iter().max().unwrap_or(0)
-    }
-
-    /// Puts all limbs into their places, with the blocks of their leaves, which lie in the tree.
-    fn put(&mut self, tree: &WideBvh, places: Vec<Part<'_>>) {
-        for (node, mut place) in self.nodes.iter_mut().zip(places) {
-            if place.len() > 0 {
-                let mut own = place.take(NODE_LINES);
-                copy_blocks(tree, None, node, &mut place);
-                own.put(*node);
-            }
-        }
     }
 }
