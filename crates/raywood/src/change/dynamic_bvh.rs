@@ -35,8 +35,10 @@ use crate::{BuildError, Bvh, Geometry, SimdLevel, WideBvh};
 pub struct DynamicBvh<G> {
     bvh: Bvh<G>,
     options: UpdateOptions,
-    /// What the tree cost when it was last built, and what was added to that by parts when these were.
+    /// What the tree cost when it was last built, of what was repaired since then the cost then; and what its parts added to that.
     built: Measured,
+    /// How many primitives were in what was repaired since all was built.
+    repaired: usize,
 }
 
 impl<G: Geometry> DynamicBvh<G> {
@@ -57,7 +59,7 @@ impl<G: Geometry> DynamicBvh<G> {
     pub fn build_with(geometry: G, options: UpdateOptions) -> Result<Self, BuildError> {
         let bvh = Bvh::build_with(geometry, &options.build)?;
         let built = bvh.tree().measured();
-        Ok(Self { bvh, options, built })
+        Ok(Self { bvh, options, built, repaired: 0 })
     }
 
     /// The tree with its geometry and all queries.
@@ -103,23 +105,14 @@ impl<G: Geometry> DynamicBvh<G> {
             }
         };
         self.bvh.geometry = geometry;
-        let update = |decision, cost| Update {
-            decision,
-            built_cost: self.built.cost,
-            refitted_cost: refitted.cost,
-            cost,
-        };
-        if refitted.cost <= self.limit(self.built.cost) {
-            return Ok(update(Decision::Refitted, refitted.cost));
+        let cost = refitted.cost;
+        if cost <= self.limit(self.built.cost) {
+            let built_cost = self.built.cost;
+            let decision = Decision::Refitted;
+            return Ok(Update { decision, built_cost, refitted_cost: cost, cost });
         }
-        if let Some((tree, decision)) = self.repaired(&refitted)? {
-            let measured = tree.measured();
-            if measured.cost <= self.limit(self.built.cost) {
-                let update = update(decision, measured.cost);
-                self.bvh.tree = tree;
-                self.built.cuttings = measured.cuttings;
-                return Ok(update);
-            }
+        if let Some(update) = self.repair(&refitted)? {
+            return Ok(update);
         }
         self.bvh.tree = self.built_over(&self.bvh.geometry)?;
         Ok(self.rebuilt(refitted.cost))
@@ -131,25 +124,38 @@ impl<G: Geometry> DynamicBvh<G> {
         self.options.max_growth.max(1.0) * built
     }
 
-    /// The tree with what is in the parts that have become too bad built anew; `None` if that is too much.
-    fn repaired(&self, refitted: &Measured) -> Result<Option<(WideBvh, Decision)>, BuildError> {
+    /// Builds anew what is in the parts that have become too bad; `None`, and nothing changes, if that is too much or does not help.
+    fn repair(&mut self, refitted: &Measured) -> Result<Option<Update>, BuildError> {
         let (tree, geometry) = (&self.bvh.tree, &self.bvh.geometry);
-        let costs = refitted.cuttings.iter().zip(&self.built.cuttings);
+        let costs = || refitted.cuttings.iter().zip(&self.built.cuttings);
         // Less is allowed to each than to the whole, or what is left of all of them would soon be too much.
         let limit = self.limit(1.0).sqrt();
-        let chosen: Vec<_> = costs.map(|(now, built)| *now > limit * built).collect();
+        let chosen: Vec<_> = costs().map(|(now, built)| *now > limit * built).collect();
         let subtrees = chosen.iter().filter(|is_chosen| **is_chosen).count();
         let primitives = tree.primitives_in(&chosen);
-        let share = primitives.len() as f64 / geometry.len() as f64;
-        // Of a limit that is no number nothing is allowed.
-        let is_allowed = share <= self.options.max_repair_share;
+        // Every repair leaves trees beside each other that a build would make one of. Of a limit that is no number nothing is allowed.
+        let repaired = self.repaired + primitives.len();
+        let is_allowed = repaired as f64 <= self.options.max_repair_share * geometry.len() as f64;
         if subtrees == 0 || !is_allowed {
             return Ok(None);
         }
-        let decision = Decision::Repaired { subtrees, primitives: primitives.len() };
         let options = &self.options.build;
-        let repaired = tree.with_new_bough(geometry, (&chosen, &primitives), options)?;
-        Ok(repaired.map(|tree| (tree, decision)))
+        let tree = tree.with_new_bough(geometry, (&chosen, &primitives), options)?;
+        let Some(tree) = tree else { return Ok(None) };
+
+        // What is new is measured by what it costs now, what is left by what it cost when it was built.
+        let Measured { cost, cuttings } = tree.measured();
+        let left = costs().zip(&chosen).filter(|(_, is_chosen)| !**is_chosen);
+        let growth: f64 = left.map(|((now, built), _)| now - built).sum();
+        let built_cost = cost - growth;
+        if cost > self.limit(built_cost) {
+            return Ok(None);
+        }
+        self.bvh.tree = tree;
+        self.built = Measured { cost: built_cost, cuttings };
+        self.repaired = repaired;
+        let decision = Decision::Repaired { subtrees, primitives: primitives.len() };
+        Ok(Some(Update { decision, built_cost, refitted_cost: refitted.cost, cost }))
     }
 
     /// A new tree, traced by the same instructions.
@@ -162,6 +168,7 @@ impl<G: Geometry> DynamicBvh<G> {
     /// What is told of a tree that was built anew just now.
     fn rebuilt(&mut self, refitted_cost: f64) -> Update {
         self.built = self.bvh.tree.measured();
+        self.repaired = 0;
         let cost = self.built.cost;
         Update { decision: Decision::Rebuilt, built_cost: cost, refitted_cost, cost }
     }

@@ -12,7 +12,7 @@ pub struct UpdateOptions {
     /// How many times as high the expected cost [`Q`](crate::StructureStats::q) of the tree may be as when it was built, at least 1. Rays take longer about in proportion. What is
     /// beyond is repaired or built anew.
     pub max_growth: f64,
-    /// Which share of the primitives may lie in subtrees that are built anew together, 0 to 1. If there are more, the whole tree is.
+    /// How many primitives may be in what is repaired until the whole tree is built anew, all repairs since the last build together, as a share of all: 0 to 1.
     pub max_repair_share: f64,
 }
 
@@ -28,7 +28,7 @@ impl Default for UpdateOptions {
 pub struct Update {
     /// What was done.
     pub decision: Decision,
-    /// What the tree cost when all of it was last built: the measure of growth. It is this update's if that built it.
+    /// The measure of growth from now on: what the tree cost when it was last built, of parts that were repaired since then what they cost then.
     pub built_cost: f64,
     /// What it cost with new boxes alone; of another number of primitives, for which there are none, infinity.
     pub refitted_cost: f64,

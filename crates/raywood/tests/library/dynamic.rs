@@ -72,9 +72,11 @@ fn check_costs(scene: &DynamicBvh<TriangleMesh>, update: &Update) {
     match update.decision {
         Decision::Refitted => assert_eq!(update.cost, update.refitted_cost),
         Decision::Rebuilt => assert_eq!(update.cost, update.built_cost),
-        _ => assert!(update.cost < update.refitted_cost),
+        _ => assert!(update.cost < update.refitted_cost && update.cost <= limit),
     }
-    assert_eq!(update.decision == Decision::Refitted, update.refitted_cost <= limit.max(q));
+    if update.decision == Decision::Refitted {
+        assert!(update.cost <= limit, "{update:?}");
+    }
 }
 
 #[test]
@@ -138,7 +140,7 @@ fn what_is_bad_in_one_place_is_repaired_there() {
     let soup = shapes::soup(40_000, 0.02, 3);
     for preset in BuildPreset::ALL {
         let build = preset.options();
-        let options = UpdateOptions { build, max_growth: 2.0, ..Default::default() };
+        let options = UpdateOptions { build, max_growth: 2.0, max_repair_share: 1.0 };
         let mut scene = DynamicBvh::build_with(soup.clone(), options).expect("it builds");
         let mut mesh = soup.clone();
         let mut most = 0;
@@ -163,6 +165,52 @@ fn what_is_bad_in_one_place_is_repaired_there() {
         }
         assert!(most > 4000, "{most}");
     }
+}
+
+#[test]
+fn repairs_end_in_a_build() {
+    let soup = shapes::soup(40_000, 0.02, 3);
+    let mut scene = DynamicBvh::build(soup.clone()).expect("it builds");
+    let (mut repaired, mut decisions) = (0, [0; 2]);
+    for step in 0..20 {
+        // Always in the same place, always from what was built there last.
+        let pose = shuffled(scene.bvh().geometry(), step, |p| p.max_element() < -0.4);
+        let update = scene.update(pose).expect("it is taken on");
+        check_costs(&scene, &update);
+        match update.decision {
+            Decision::Repaired { primitives, .. } => {
+                repaired += primitives;
+                decisions[0] += 1;
+                assert!(repaired <= 20_000, "{update}");
+            }
+            Decision::Rebuilt => {
+                repaired = 0;
+                decisions[1] += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(decisions[0] > 3 * decisions[1] && decisions[1] > 0, "{decisions:?}");
+    check(&scene, "repaired again and again");
+}
+
+#[test]
+fn what_became_harder_in_one_place_is_repaired() {
+    // Vertices that triangles share: these become long, and no tree makes them cheap.
+    let flat = sheet(150, |_, _| 0.0);
+    let mut scene = DynamicBvh::build(flat.clone()).expect("it builds");
+    let mut rng = Rng::new(6);
+    let torn = |&p: &Vec3| match p.max_element() < 0.1 {
+        true => Vec3::new(0.1 * rng.unit(), 0.1 * rng.unit(), 0.1 * rng.unit()),
+        false => p,
+    };
+    let torn = flat.positions().iter().map(torn).collect::<Vec<_>>();
+    let update = scene.update(flat.with_positions(torn).expect("as many")).expect("it is taken on");
+    assert!(matches!(update.decision, Decision::Repaired { .. }), "{update}");
+    check_costs(&scene, &update);
+    check(&scene, "torn");
+    let fresh = Bvh::build(scene.bvh().geometry().clone()).expect("it builds").stats().q;
+    assert!(update.cost < 1.15 * fresh, "{update}, {fresh}");
 }
 
 #[test]
