@@ -169,22 +169,14 @@ impl Triangles {
         frame: &Frame,
         groups: &Groups,
     ) -> Self {
-        // The corners in the packet's frame, sheared.
-        let corner = |number| {
-            let [x, y, z] = frame.corners(simd, blocks, number);
-            let [shear_x, shear_y] = frame.shear;
-            [x - simd.splat16(shear_x) * z, y - simd.splat16(shear_y) * z, z]
-        };
-        let (a, b, c) = (corner(0), corner(1), corner(2));
-
-        // Each edge's function: the cross product of its ends' sum and difference, both seen as points of the plane at depth one.
-        let (zero, two) = (simd.splat16(0.0), simd.splat16(2.0));
-        let edge = |from: [S::F16; 3], to: [S::F16; 3]| {
-            let along = [to[0] - from[0], to[1] - from[1]];
-            let constant = (from[0] + to[0]) * along[1] - (from[1] + to[1]) * along[0];
-            ([zero - two * along[1], two * along[0], constant], along)
-        };
-        let ((edge_c, ab), (edge_a, bc), (edge_b, ca)) = (edge(a, b), edge(b, c), edge(c, a));
+        let [a, b, c] = [
+            sheared_corners(simd, blocks, 0, frame),
+            sheared_corners(simd, blocks, 1, frame),
+            sheared_corners(simd, blocks, 2, frame),
+        ];
+        let zero = simd.splat16(0.0);
+        let ((edge_c, ab), (edge_a, bc), (edge_b, ca)) =
+            (edge(simd, a, b), edge(simd, b, c), edge(simd, c, a));
         let (first, second, third) = (sub(b, a), sub(c, b), sub(a, c));
 
         // The plane of the triangle, from its two shorter edges, and twice its area as seen.
@@ -206,8 +198,7 @@ impl Triangles {
         let reach = reach + simd.splat16(frame.farthest);
         let terms = reach * (longest + extent);
         let reach = reach * simd.splat16(ROUNDING);
-        let size = |along: [S::F16; 2]| along[0].abs().larger(along[1].abs());
-        let longest = size(ab).larger(size(bc)).larger(size(ca));
+        let longest = longer_side(ab).larger(longer_side(bc)).larger(longer_side(ca));
         let errors = reach * simd.splat16(EDGE_ROUNDINGS) * longest * half.abs();
         let tolerances = reach * simd.splat16(DEPTH_ROUNDINGS) * slant;
         let size = area.abs();
@@ -279,4 +270,34 @@ impl Triangles {
         }
         passing
     }
+}
+
+// Functions, not closures: of what takes or returns vectors the compiler inlines into code for other instructions only what it must.
+
+/// A corner of each triangle in the packet's frame, sheared.
+#[inline(always)]
+fn sheared_corners<S: Simd>(
+    simd: S,
+    blocks: [&TriangleBlock; 2],
+    number: usize,
+    frame: &Frame,
+) -> [S::F16; 3] {
+    let [x, y, z] = frame.corners(simd, blocks, number);
+    let [shear_x, shear_y] = frame.shear;
+    [x - simd.splat16(shear_x) * z, y - simd.splat16(shear_y) * z, z]
+}
+
+/// The function of each edge, the cross product of its ends' sum and difference, both seen as points of the plane at depth one; and the edge as it is seen.
+#[inline(always)]
+fn edge<S: Simd>(simd: S, from: [S::F16; 3], to: [S::F16; 3]) -> ([S::F16; 3], [S::F16; 2]) {
+    let (zero, two) = (simd.splat16(0.0), simd.splat16(2.0));
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let constant = (from[0] + to[0]) * along[1] - (from[1] + to[1]) * along[0];
+    ([zero - two * along[1], two * along[0], constant], along)
+}
+
+/// The longer side of the box around each edge.
+#[inline(always)]
+fn longer_side<F: Float>(along: [F; 2]) -> F {
+    along[0].abs().larger(along[1].abs())
 }
