@@ -21,6 +21,9 @@ const SLACK: f32 = 1.0 / (1 << 19) as f32;
 /// Reciprocals and sizes up to this are usual: their products neither overflow nor come near to it.
 const USUAL: f32 = (1u64 << 60) as f32;
 
+/// Products of sizes and reciprocals up to this are finite with all that is added to them.
+const FINITE: f32 = f32::MAX / 128.0;
+
 /// The side of a box on which a plane lies.
 #[derive(Clone, Copy, Debug)]
 #[repr(usize)]
@@ -101,8 +104,8 @@ impl Slabs {
         let errors = reciprocal.map(|r| if steep(r) { 2.0 * farthest } else { 0.0 });
         *self = Self::with(origin, bounded.into(), t_min, errors);
         for (axis, r) in reciprocal.into_iter().enumerate() {
-            if !usual && (size > USUAL || steep(r)) {
-                // Nothing can be said: every box is met, but not the inverted one of a child that is not there.
+            if !usual && (steep(r) || size * r.abs() > FINITE) {
+                // Nothing can be said along this axis: every box is met, but not the inverted one of a child that is not there.
                 self.reciprocal[axis] = f32::MIN_POSITIVE.copysign(r);
                 (self.entry[axis], self.exit[axis]) = (f32::MIN, f32::MAX);
             }

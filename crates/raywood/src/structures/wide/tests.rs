@@ -108,6 +108,40 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
 }
 
 #[test]
+fn one_vertex_far_away_is_no_reason_to_look_everywhere() {
+    for far in [1e18, 1e20, 1e30, 1e37] {
+        let Joined { first, second } = things(3000, 0);
+        let mut positions = first.positions().to_vec();
+        positions[300].x = far;
+        let first = TriangleMesh::new(positions, first.triangles().to_vec()).expect("finite");
+        let things = Joined { first, second };
+        let tree = WideBvh::build(&things, &BuildOptions::default()).expect("it builds");
+        let binary = Bvh2::build(&things, &BuildOptions::default()).expect("it builds");
+        // Without those that hardly move along an axis: of boxes along that nothing can be said.
+        let rays = rays(2000).into_iter().enumerate().filter(|(number, _)| number % 16 > 8);
+        let rays: Vec<_> = rays.map(|(_, ray)| ray).collect();
+        let expected: Vec<_> =
+            rays.iter().map(|ray| binary.intersect(&things, ray, &mut ())).collect();
+        assert!(expected.iter().flatten().count() > 300);
+        for &level in SimdLevel::ALL.iter().filter(|level| level.is_available()) {
+            let (geometry, tree, rays) = (&things, &tree, &rays[..]);
+            let mut probe = Counts::default();
+            for (ray, expected) in rays.iter().zip(&expected) {
+                let probe = &mut probe;
+                let closest = single::Closest::<_, false> { tree, geometry, ray, probe };
+                assert_eq!(dispatch_on(level, closest), *expected, "{far:e}: {ray:?}");
+            }
+            let each = probe.nodes / rays.len() as u64;
+            assert!(each < 60, "{far:e}, {}: {each} nodes and leaves for a ray", level.name());
+            let hits = &mut vec![None; rays.len()][..];
+            let closest = batch::Closest::<_, _, false> { tree, geometry, rays, hits: &mut *hits };
+            dispatch_on(level, closest);
+            assert!(*hits == expected, "{far:e}: a batch");
+        }
+    }
+}
+
+#[test]
 fn fast_tests_find_nearly_the_same() {
     let things = things(3000, 50);
     let options = BuildOptions { triangle_test: TriangleTest::Fast, ..Default::default() };
