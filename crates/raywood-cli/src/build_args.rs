@@ -17,7 +17,7 @@ use crate::progress_bar::during_build;
 pub(crate) struct BuildArgs {
     /// fastest, fast, balanced, high or best build
     ///
-    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. What comes out does not change. The default is balanced, but of a saved scene its own tree.
+    /// From the fastest build to the tree that is fastest to trace; of the bounding volume hierarchies, other structures are the same by all. What comes out is the same but for last digits, which show in single pixels. The default is balanced, but of a saved scene its own tree.
     #[arg(long = "build", value_name = "PRESET", value_parser = build_preset)]
     preset: Option<BuildPreset>,
 
@@ -103,7 +103,7 @@ impl BuildArgs {
             Some(preset) => format!("a higher limit or --build {}", preset.name()),
             None => "a higher limit".to_owned(),
         };
-        let (name, needed, limit) = (kind.name(), Size(needed), Size(limit));
+        let (name, needed, limit) = (kind.name(), Size(needed).in_words(), Size(limit));
         Failure::bad_input(format!(
             "building {name} may take {needed} of memory, above --memory-limit {limit}; expected {advice}"
         ))
@@ -112,6 +112,13 @@ impl BuildArgs {
 
 /// A number of bytes as the command line has it, rounded up.
 struct Size(usize);
+
+impl Size {
+    /// As it is said in a sentence.
+    fn in_words(self) -> String {
+        if self.0 < 10_000 { format!("{self} bytes") } else { self.to_string() }
+    }
+}
 
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -135,6 +142,7 @@ mod tests {
         let said = |bytes: usize| Size(bytes).to_string();
         assert_eq!(["0", "9999"], [said(0), said(9999)]);
         assert_eq!(["10K", "500M"], [said(10_000), said(500 << 20)].each_ref().map(String::as_str));
+        assert_eq!([Size(9032), Size(10_240)].map(Size::in_words), ["9032 bytes", "10K"]);
         assert_eq!([said((16 << 30) + 1), said((9 << 30) + 1)], ["17G", "9217M"]);
     }
 }

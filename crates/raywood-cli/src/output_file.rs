@@ -63,6 +63,17 @@ impl OutputFile {
         Ok(Self { name: path.to_owned(), target, temporary })
     }
 
+    /// Refuses to replace the file that the work begins with.
+    pub(crate) fn apart_from(self, input: &Path) -> Result<Self, Failure> {
+        match fs::canonicalize(input) {
+            Ok(input) if input == self.target => Err(Failure::bad_input(format!(
+                "{}: cannot be written: it is what is read, expected another file",
+                self.name.display()
+            ))),
+            _ => Ok(self),
+        }
+    }
+
     /// Writes the file whole; what was there before stays until then, and stays if writing fails.
     pub(crate) fn write(
         &self,

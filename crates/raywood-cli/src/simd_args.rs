@@ -12,7 +12,7 @@ use crate::parse::simd_level;
 pub(crate) struct SimdArgs {
     /// Best of portable, avx2, avx512 to use
     ///
-    /// One of portable, avx2 and avx512: levels above it are not used, only times change. Else the best that the machine has, or what the environment variable RAYWOOD_SIMD says.
+    /// One of portable, avx2 and avx512: levels above it are not used; times change, and last digits, which show in single pixels. Else the best that the machine has, or what the environment variable RAYWOOD_SIMD says.
     #[arg(long, value_name = "LEVEL", value_parser = simd_level)]
     simd: Option<SimdLevel>,
 }

@@ -535,6 +535,10 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
     assert_eq!(code(&run(&folder, "query model.obj")), 2, "neither rays nor points");
     assert_eq!(code(&run(&folder, "query model.obj --rays short.npy -o out.dat")), 2);
     assert_eq!(code(&run(&folder, "query missing.obj --rays shape.npy")), 2);
+    let output = run(&folder, "query model.obj --rays nan.csv -o ./nan.csv");
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("it is what is read"), "{}", stderr(&output));
+    assert!(fs::read(folder.join("nan.csv")).expect("it is still there").starts_with(b"0,0,5"));
 }
 
 #[test]

@@ -191,7 +191,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let output = match is_standard(&args.output) {
         true => None,
-        false => Some(OutputFile::new(&args.output)?),
+        false => Some(OutputFile::new(&args.output)?.apart_from(source)?),
     };
     let input = Input::new(source);
     let mut rows = input_format.read(input.clone(), subject)?;

@@ -99,7 +99,7 @@ pub(crate) struct Args {
 
     /// Acceleration structure to trace with
     ///
-    /// The picture is the same with each; times and memory differ. A wrong name is answered with those that exist.
+    /// The picture is the same with each but for last digits, which show in single pixels; times and memory differ. A wrong name is answered with those that exist.
     #[arg(long, value_name = "NAME", value_parser = structure_kind)]
     structure: Option<StructureKind>,
 

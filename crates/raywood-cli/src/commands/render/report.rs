@@ -11,7 +11,7 @@ use super::Args;
 use crate::exporters;
 use crate::parse::Size;
 use crate::picture::{Bounds, Heat};
-use crate::print::thousands;
+use crate::print::{thousands, threads};
 
 /// What was done and how long it took.
 pub(super) struct Report<'a> {
@@ -63,10 +63,10 @@ impl Report<'_> {
         line(
             "render",
             format!(
-                "{}   {paths}{:.1} million rays/s on {} threads",
+                "{}   {paths}{:.1} million rays/s on {}",
                 seconds(&render.elapsed),
                 render.million_rays_per_second(),
-                render.threads
+                threads(render.threads)
             ),
         );
         if let Some(Bounds { level, boxes, time }) = bounds {

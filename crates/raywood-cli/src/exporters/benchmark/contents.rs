@@ -7,12 +7,12 @@ use raywood_lab::{Benchmark, Clock, RaySetSummary, RaySpeed, Speed};
 
 use super::{Benched, PICTURE, million_rays_per_second, nanoseconds, set_of};
 use crate::exporters::contents::{Contents, measured};
-use crate::print::thousands;
+use crate::print::{self, thousands};
 
 pub(super) fn contents(benched: &Benched<'_>) -> Contents {
     let Benched { scene, build: (seconds, threads), benchmark } = benched;
     let primitives = thousands(benchmark.primitives as u64);
-    let (structure, threads) = (benchmark.structure.name(), threads_text(*threads));
+    let (structure, threads) = (benchmark.structure.name(), print::threads(*threads));
     let mut tables = vec![rays(benchmark)];
     if benchmark.levels.len() > 1 {
         tables.extend(by_level(benchmark));
@@ -39,14 +39,10 @@ fn instructions(benchmark: &Benchmark) -> String {
 fn clocks(benchmark: &Benchmark) -> String {
     let clock = |clock: &Clock| {
         let (gigahertz, spread) = (1e-9 * clock.hertz(), 100.0 * clock.cycle.spread());
-        format!("{gigahertz:.2} GHz \u{b1}{spread:.0}% on {}", threads_text(clock.threads))
+        format!("{gigahertz:.2} GHz \u{b1}{spread:.0}% on {}", print::threads(clock.threads))
     };
     let clocks: Vec<_> = benchmark.clocks.iter().map(clock).collect();
     format!("core clock, estimated: {}", clocks.join(", "))
-}
-
-fn threads_text(threads: usize) -> String {
-    if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") }
 }
 
 /// Rays and pictures on every number of threads.
@@ -162,7 +158,7 @@ fn notes(benchmark: &Benchmark) -> Vec<String> {
             "The picture has {width}x{height} pixels of one ray from the eye, traced by Whitted's method: shading and all else is included. {:.2} of them \
              a second on {}.",
             speed.rays_per_second() / speed.rays.max(1) as f64,
-            threads_text(speed.threads)
+            print::threads(speed.threads)
         ),
     };
     vec![

@@ -6,13 +6,13 @@ use raywood_lab::{Comparison, RaySetSummary, StructureReport, Traces};
 
 use super::Compared;
 use crate::exporters::contents::{Contents, measured};
-use crate::print::thousands;
+use crate::print::{thousands, threads};
 
 /// All of it.
 pub(super) fn contents(Compared { scene, comparison }: &Compared<'_>) -> Contents {
     let primitives = thousands(comparison.primitives as u64);
     Contents {
-        heading: format!("{scene}: {primitives} primitives, {} threads", comparison.threads),
+        heading: format!("{scene}: {primitives} primitives, {}", threads(comparison.threads)),
         facts: ray_sets(comparison),
         tables: tables(comparison),
         notes: notes(comparison),
