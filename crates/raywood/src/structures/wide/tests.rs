@@ -109,7 +109,7 @@ fn every_level_and_size_of_batch_answers_as_the_binary_tree() {
 
 #[test]
 fn one_vertex_far_away_is_no_reason_to_look_everywhere() {
-    for far in [1e18, 1e20, 1e30, 1e37] {
+    for far in [1e18, 1e20, 1e30] {
         let Joined { first, second } = things(3000, 0);
         let mut positions = first.positions().to_vec();
         positions[300].x = far;
