@@ -175,9 +175,9 @@ fn binary(builder: Builder, n: usize, options: &BuildOptions) -> PerPrimitive {
     let building = building + (growing + boxes) * (in_pieces / n as f64).min(1.0);
 
     let share = f64::from(options.reinsertion_share);
-    let improving = match options.reinsertion_passes.unwrap_or(0) + options.rotation_passes {
-        0 => 0.0,
-        _ => {
+    let improving = match options.improves() {
+        false => 0.0,
+        true => {
             // Parents of pairs, heights, and in turn: areas; candidates and moves; the copy.
             let linked = tree + 3.0 * nodes;
             let searching = nodes * (1.0 + share * (4.0 + 24.0 + 24.0));

@@ -127,6 +127,11 @@ impl BuildOptions {
         }
     }
 
+    /// Whether a bounding volume hierarchy is improved after it is built; a structure that has passes of its own says so before.
+    pub(crate) fn improves(&self) -> bool {
+        self.rotation_passes > 0 || self.reinsertion_passes.is_some_and(|passes| passes > 0)
+    }
+
     /// Whether triangles are cut for the wide tree.
     pub(crate) fn cuts_triangles(&self) -> bool {
         self.clamped().spatial_splits > 0.0

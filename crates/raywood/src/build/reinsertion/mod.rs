@@ -54,7 +54,7 @@ pub(super) fn optimize(
         options;
     let passes = options.reinsertion_passes.unwrap_or(0);
     // Boxes without area cost nothing wherever they are; two leaves can lie in one way only.
-    if passes + rotations == 0 || tree.nodes().len() <= 3 || tree.bounds().half_area() <= 0.0 {
+    if !options.improves() || tree.nodes().len() <= 3 || tree.bounds().half_area() <= 0.0 {
         work.done()?;
         return Ok(tree);
     }
@@ -90,9 +90,9 @@ pub(super) fn cost(options: &BuildOptions) -> f64 {
     let BuildOptions { reinsertion_passes, reinsertion_share, rotation_passes, .. } =
         options.clamped();
     let (passes, rotations) = (reinsertion_passes.unwrap_or(0), rotation_passes);
-    match passes + rotations {
-        0 => 0.0,
-        _ => {
+    match options.improves() {
+        false => 0.0,
+        true => {
             let searching = pass_cost(reinsertion_share) * passes.min(USUAL_PASSES) as f64;
             LINKING + ROTATING * rotations as f64 + searching + COPYING
         }

@@ -105,6 +105,23 @@ fn the_best_rotation_is_the_best_of_all_that_there_are() {
 }
 
 #[test]
+fn as_many_passes_as_numbers_allow_end_when_nothing_is_gained() {
+    let (spheres, _) = tree(300, 9);
+    let cost = |rotation_passes, reinsertion_passes| {
+        let (rotations, passes) = (rotation_passes, Some(reinsertion_passes));
+        let options = BuildOptions {
+            rotation_passes: rotations,
+            reinsertion_passes: passes,
+            ..Default::default()
+        };
+        let tree = Bvh2::build(&spheres, &options).expect("it builds");
+        LinkedTree::new(tree, Work::UNWATCHED).expect("nobody stops it").cost()
+    };
+    assert!(cost(1, usize::MAX) < cost(0, 0));
+    assert!(cost(usize::MAX, 0) < cost(0, 0));
+}
+
+#[test]
 fn passes_of_rotations_gain_what_they_say() {
     let (spheres, mut tree) = tree(500, 8);
     let first = tree.cost();

@@ -21,10 +21,7 @@ use tree::{Planter, Sizes};
 
 /// Whether the options ask for a tree that is built so.
 pub(crate) fn is_asked_for(options: &BuildOptions) -> bool {
-    options.wide_builder == Builder::Lbvh
-        && options.reinsertion_passes.unwrap_or(0) == 0
-        && options.rotation_passes == 0
-        && !options.cuts_triangles()
+    options.wide_builder == Builder::Lbvh && !options.improves() && !options.cuts_triangles()
 }
 
 /// Builds the tree. The same for any number of threads.
