@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use raywood::{Hit, HitColumns, Ray, SimdLevel, Vec3};
+use raywood::{Hit, HitColumns, SimdLevel};
 use raywood_scene::Rgb;
 
 use super::{Frame, TileRenderer};
@@ -13,6 +13,7 @@ use crate::wave::Traced;
 use crate::wave::columns::get;
 use crate::wave::find::FindSurfaces;
 use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::ray_queue::{RayQueue, Travelled};
 use crate::wave::surfaces::Surfaces;
 use crate::wave::textured_surfaces::TextureMemory;
 
@@ -51,11 +52,7 @@ struct Scratch {
 }
 
 /// Rays that go on through holes.
-#[derive(Default)]
-struct Behind {
-    rays: Vec<Ray>,
-    pixels: Vec<Seen>,
-}
+type Behind = RayQueue<Seen>;
 
 /// In which pixel of the tile a ray is seen, by which share, and how long its way was before.
 #[derive(Clone, Copy)]
@@ -63,6 +60,13 @@ struct Seen {
     pixel: u16,
     share: f32,
     travelled: f32,
+}
+
+impl Travelled for Seen {
+    #[inline(always)]
+    fn travelled(&self) -> f32 {
+        self.travelled
+    }
 }
 
 /// Behind so many holes one after the other everything counts as whole.
@@ -129,15 +133,15 @@ impl<S: Shown> FirstHits<'_, S> {
             std::mem::swap(&mut scratch.behind, &mut scratch.wave);
             scratch.behind.clear();
             let Scratch { wave, hits, surfaces, textures, colors, behind, .. } = &mut *scratch;
-            if wave.rays.is_empty() {
+            if wave.len() == 0 {
                 break;
             }
-            hits.resize(wave.rays.len(), None);
+            hits.resize(wave.len(), None);
             self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
-            counts.refraction += wave.rays.len() as u64;
-            let wave = TracedBehind { rays: &wave.rays, pixels: &wave.pixels, hits };
+            counts.refraction += wave.len() as u64;
+            let wave = wave.traced(hits, 0..wave.len());
             let memory = Memory { surfaces, textures, colors, behind };
-            let seen = |ray: usize| wave.pixels[ray];
+            let seen = |ray: usize| wave.known(ray);
             let samples = |pixel| samples_of(tile, pixel, index);
             counts += self.show(&wave, level, (seen, samples), memory, pixels);
         }
@@ -184,8 +188,8 @@ impl<S: Shown> FirstHits<'_, S> {
             if opacity < 1.0 {
                 let travelled = seen.travelled + surfaces.distance(number);
                 let ray = surface.point.spawn(get(&surfaces.directions, number));
-                behind.rays.push(ray);
-                behind.pixels.push(Seen { share: (1.0 - opacity) * seen.share, travelled, ..seen });
+                let share = (1.0 - opacity) * seen.share;
+                behind.push(ray, Seen { share, travelled, ..seen });
             }
         }
         counts
@@ -204,45 +208,4 @@ struct Memory<'a> {
     textures: &'a mut TextureMemory,
     colors: &'a mut Vec<Rgb>,
     behind: &'a mut Behind,
-}
-
-impl Behind {
-    fn clear(&mut self) {
-        self.rays.clear();
-        self.pixels.clear();
-    }
-}
-
-/// Rays through holes that were traced.
-struct TracedBehind<'a> {
-    rays: &'a [Ray],
-    pixels: &'a [Seen],
-    hits: &'a [Option<Hit>],
-}
-
-impl Traced for TracedBehind<'_> {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.hits.len()
-    }
-
-    #[inline(always)]
-    fn origin(&self, ray: usize) -> Vec3 {
-        self.rays[ray].origin
-    }
-
-    #[inline(always)]
-    fn direction(&self, ray: usize) -> Vec3 {
-        self.rays[ray].direction
-    }
-
-    #[inline(always)]
-    fn travelled(&self, ray: usize) -> f32 {
-        self.pixels[ray].travelled
-    }
-
-    #[inline(always)]
-    fn hit(&self, ray: usize) -> Option<Hit> {
-        self.hits[ray]
-    }
 }

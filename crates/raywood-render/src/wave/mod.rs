@@ -5,6 +5,7 @@ pub(crate) mod columns;
 pub(crate) mod find;
 mod footprints;
 pub(crate) mod primary;
+pub(crate) mod ray_queue;
 pub(crate) mod surfaces;
 mod texture_reads;
 pub(crate) mod textured_surfaces;

@@ -1,10 +1,11 @@
 //! Paths on their way, and the rays that they take next.
 
-use raywood::{Hit, Ray, Vec3};
+use raywood::{Hit, Vec3};
 use raywood_scene::Rgb;
 
+use crate::wave::Traced;
 use crate::wave::primary::TracedPrimary;
-use crate::wave::{TRACED, Traced};
+use crate::wave::ray_queue::{RayQueue, TracedRays, Travelled};
 
 /// How a path came here.
 #[derive(Clone, Copy)]
@@ -25,6 +26,13 @@ pub(super) struct Walk {
     pub(super) absorption: Rgb,
     /// How long the way from the eye to where the ray starts was.
     pub(super) length: f32,
+}
+
+impl Travelled for Walk {
+    #[inline(always)]
+    fn travelled(&self) -> f32 {
+        self.length
+    }
 }
 
 /// Rays that were traced, of which it is known on which paths.
@@ -85,76 +93,12 @@ impl Walked for Primary<'_> {
     }
 }
 
-/// Rays and the paths that they belong to, number by number.
-#[derive(Default)]
-pub(super) struct Walks {
-    pub(super) rays: Vec<Ray>,
-    pub(super) walks: Vec<Walk>,
-}
+/// Rays and the paths that they belong to. As each ray is followed by one at most, no more than twice as many ever wait as are traced together.
+pub(super) type Walks = RayQueue<Walk>;
 
-impl Walks {
-    #[inline]
-    pub(super) fn push(&mut self, ray: Ray, walk: Walk) {
-        self.rays.push(ray);
-        self.walks.push(walk);
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.rays.clear();
-        self.walks.clear();
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.rays.len()
-    }
-
-    /// Moves the last rays, as many as are traced together at most, to others, which are forgotten. As each ray is followed by one at most, no more than twice
-    /// as many ever wait.
-    pub(super) fn move_wave(&mut self, wave: &mut Self) {
-        let start = self.len().saturating_sub(TRACED);
-        wave.clear();
-        wave.rays.extend(self.rays.drain(start..));
-        wave.walks.extend(self.walks.drain(start..));
-    }
-}
-
-/// Rays of paths that were traced.
-pub(super) struct TracedWalks<'a> {
-    pub(super) rays: &'a [Ray],
-    pub(super) walks: &'a [Walk],
-    pub(super) hits: &'a [Option<Hit>],
-}
-
-impl Traced for TracedWalks<'_> {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.hits.len()
-    }
-
-    #[inline(always)]
-    fn origin(&self, ray: usize) -> Vec3 {
-        self.rays[ray].origin
-    }
-
-    #[inline(always)]
-    fn direction(&self, ray: usize) -> Vec3 {
-        self.rays[ray].direction
-    }
-
-    #[inline(always)]
-    fn travelled(&self, ray: usize) -> f32 {
-        self.walks[ray].length
-    }
-
-    #[inline(always)]
-    fn hit(&self, ray: usize) -> Option<Hit> {
-        self.hits[ray]
-    }
-}
-
-impl Walked for TracedWalks<'_> {
+impl Walked for TracedRays<'_, Walk> {
     #[inline(always)]
     fn walk(&self, ray: usize) -> Walk {
-        self.walks[ray]
+        self.known(ray)
     }
 }

@@ -5,7 +5,7 @@ use raywood::{Hit, HitColumns, SimdLevel};
 use super::picture::Picture;
 use super::scatter::Scatterer;
 use super::shadow_rays::ShadowRays;
-use super::walks::{Primary, TracedWalks, Walked, Walks};
+use super::walks::{Primary, Walked, Walks};
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePixels};
@@ -121,8 +121,6 @@ impl<'a> Waves<'a> {
             let Scratch { waiting, wave, hits, surfaces, textures, shadows, .. } =
                 &mut *self.scratch;
             let part = first..hits.len().min(first + WAVE);
-            let (rays, walks) = (&wave.rays[part.clone()], &wave.walks[part.clone()]);
-            let traced = TracedWalks { rays, walks, hits: &hits[part] };
             let scatterer = Scatterer {
                 picture: self.picture,
                 tile: self.tile,
@@ -131,7 +129,7 @@ impl<'a> Waves<'a> {
                 waiting,
                 shadows,
             };
-            scatter(scatterer, &traced, (surfaces, textures), self.level);
+            scatter(scatterer, &wave.traced(hits, part), (surfaces, textures), self.level);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Rays that wait for their turn, sorted by what they are: rays that belong together are fastest traced together.
 
-use raywood::{Hit, Ray, Vec3};
 use raywood_scene::Rgb;
 
 use crate::wave::primary::TracedPrimary;
+use crate::wave::ray_queue::{RayQueue, TracedRays, Travelled};
 use crate::wave::{TRACED, Traced};
 
 /// How a ray came here.
@@ -21,6 +21,13 @@ pub(super) struct Path {
     pub(super) length: f32,
 }
 
+impl Travelled for Path {
+    #[inline(always)]
+    fn travelled(&self) -> f32 {
+        self.length
+    }
+}
+
 /// Rays that were traced, of which it is known how they came here.
 pub(super) trait Followed: Traced {
     /// How a ray came here.
@@ -36,74 +43,15 @@ impl Followed for TracedPrimary<'_> {
     }
 }
 
-/// Rays of a queue that were traced.
-pub(super) struct TracedQueue<'a> {
-    pub(super) rays: &'a [Ray],
-    pub(super) paths: &'a [Path],
-    pub(super) hits: &'a [Option<Hit>],
-}
-
-impl Traced for TracedQueue<'_> {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.hits.len()
-    }
-
-    #[inline(always)]
-    fn origin(&self, ray: usize) -> Vec3 {
-        self.rays[ray].origin
-    }
-
-    #[inline(always)]
-    fn direction(&self, ray: usize) -> Vec3 {
-        self.rays[ray].direction
-    }
-
-    #[inline(always)]
-    fn travelled(&self, ray: usize) -> f32 {
-        self.paths[ray].length
-    }
-
-    #[inline(always)]
-    fn hit(&self, ray: usize) -> Option<Hit> {
-        self.hits[ray]
-    }
-}
-
-impl Followed for TracedQueue<'_> {
+impl Followed for TracedRays<'_, Path> {
     #[inline(always)]
     fn path(&self, ray: usize) -> Path {
-        self.paths[ray]
+        self.known(ray)
     }
 }
 
 /// Rays and the paths that they go on.
-#[derive(Default)]
-pub(super) struct Queue {
-    pub(super) rays: Vec<Ray>,
-    pub(super) paths: Vec<Path>,
-}
-
-impl Queue {
-    #[inline]
-    pub(super) fn push(&mut self, ray: Ray, path: Path) {
-        self.rays.push(ray);
-        self.paths.push(path);
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.rays.clear();
-        self.paths.clear();
-    }
-
-    /// Moves the last rays, as many as are traced together at most, to another queue, whose own are forgotten.
-    fn move_wave(&mut self, wave: &mut Self) {
-        let start = self.rays.len().saturating_sub(TRACED);
-        wave.clear();
-        wave.rays.extend(self.rays.drain(start..));
-        wave.paths.extend(self.paths.drain(start..));
-    }
-}
+pub(super) type Queue = RayQueue<Path>;
 
 /// Where rays wait that follow from those of a wave.
 pub(super) struct Followers<'a> {
@@ -142,15 +90,14 @@ impl Waiting {
     /// Moves as many rays as are traced together to `wave` and tells their depth, if so many wait. The deepest come first, so that no queue ever holds
     /// twice as many, however often light is split.
     pub(super) fn take_full(&mut self, wave: &mut Queue) -> Option<u32> {
-        let number =
-            self.depths.as_flattened().iter().rposition(|queue| queue.rays.len() >= TRACED)?;
+        let number = self.depths.as_flattened().iter().rposition(|queue| queue.len() >= TRACED)?;
         Some(self.take(number, wave))
     }
 
     /// Moves the rays that others may follow from soonest to `wave` and tells their depth: as many as possible are then together when their
     /// own followers have their turn.
     pub(super) fn take_first(&mut self, wave: &mut Queue) -> Option<u32> {
-        let number = self.depths.as_flattened().iter().position(|queue| !queue.rays.is_empty())?;
+        let number = self.depths.as_flattened().iter().position(|queue| queue.len() > 0)?;
         Some(self.take(number, wave))
     }
 

@@ -3,7 +3,7 @@
 use raywood::{Hit, HitColumns, SimdLevel};
 
 use super::direct::DirectLight;
-use super::queue::{Followed, Queue, TracedQueue, Waiting};
+use super::queue::{Followed, Queue, Waiting};
 use super::shade::{ShadeWave, Shader};
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
@@ -110,7 +110,7 @@ impl<'a> Waves<'a> {
     /// Traces the rays of `wave`, which have the same depth, shades what they hit, and has the rays that follow wait for their turn.
     fn trace_wave(&mut self, depth: u32) {
         let Scratch { wave, hits, .. } = &mut *self.scratch;
-        hits.resize(wave.rays.len(), None);
+        hits.resize(wave.len(), None);
         self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
@@ -125,9 +125,7 @@ impl<'a> Waves<'a> {
                 goes_on: depth < self.frame.options.max_depth,
             };
             let part = first..hits.len().min(first + WAVE);
-            let rays = &wave.rays[part.clone()];
-            let traced = TracedQueue { rays, paths: &wave.paths[part.clone()], hits: &hits[part] };
-            shade(shader, traced, (surfaces, textures), self.level);
+            shade(shader, wave.traced(hits, part), (surfaces, textures), self.level);
             self.add_direct_light(FEWEST);
         }
     }
