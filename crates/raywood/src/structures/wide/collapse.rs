@@ -118,10 +118,13 @@ impl Plan {
         self.lines_below[number].load(Relaxed) as usize
     }
 
-    /// The nodes of the binary tree that become the children of the wide node in the place of one of them, which is no leaf.
+    /// The nodes of the binary tree that become the children of the wide node in the place of one of them, which is no leaf: first those that become nodes.
+    ///
+    /// Rays that ask for any hit visit the last of the children that they meet first, and leaves are where hits are found.
     pub(super) fn children(&self, tree: &Bvh2, number: usize) -> Children {
         let mut children = Children { numbers: [0; WIDTH], count: 0 };
         self.collect(tree, (number, WIDTH), true, &mut children);
+        children.numbers[..children.count].sort_by_key(|&child| self.is_leaf(child as usize));
         children
     }
 

@@ -118,10 +118,11 @@ impl<'t> Node<'t> {
 }
 
 impl<'t> Children<'t> {
-    /// The best children of a node.
+    /// The best children of a node: first those that are nodes, as in every wide tree.
     pub(super) fn of(node: Node<'t>) -> Self {
         let mut children = Self { nodes: [node; WIDTH], count: 0 };
         children.collect(node, WIDTH, true);
+        children.nodes[..children.count].sort_by_key(|child| matches!(child, Node::Leaf(_)));
         children
     }
 
