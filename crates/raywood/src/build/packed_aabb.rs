@@ -56,10 +56,11 @@ impl PackedAabb {
         *self = self.union(*other);
     }
 
-    /// The smallest box around this one and a point.
+    /// The smallest box around this one and a point. Coordinates that are NaN change nothing.
     #[inline(always)]
     pub(crate) fn including(self, point: [f32; 4]) -> Self {
-        Self { min: lanes(self.min, point, smaller), max: lanes(self.max, point, larger) }
+        // Of two numbers of which one is NaN these tell the second.
+        Self { min: lanes(point, self.min, smaller), max: lanes(point, self.max, larger) }
     }
 
     /// The smallest box around this one and a point if the mask has all bits set; this one if it has none. Without a branch.

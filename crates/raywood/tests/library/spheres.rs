@@ -1,6 +1,8 @@
 //! Analytic spheres, alone and together with triangles.
 
-use raywood::{Aabb, Bvh, Geometry, Joined, Ray, Spheres, Vec3};
+use raywood::{
+    Aabb, BuildPreset, Bvh, Geometry, Joined, Ray, Spheres, Structure, StructureKind, Vec3,
+};
 use raywood_testkit::{Rng, shapes};
 
 #[test]
@@ -139,6 +141,25 @@ fn triangles_and_spheres_in_one_tree() {
     assert!(primitive < triangles && normal == 1.0);
     let (primitive, normal) = hit(0.9, -1.0).expect("the inner sphere");
     assert!(primitive == triangles + 1 && normal > 0.9);
+}
+
+#[test]
+fn trees_of_every_preset_hold_triangles_and_spheres_alike() {
+    // So close together that leaves have some of both.
+    let mesh = shapes::soup(400, 0.2, 1);
+    let mut rng = Rng::new(6);
+    let spheres = (0..400).map(|_| (rng.in_cube(), rng.range(0.01, 0.1))).collect();
+    let joined = Joined { first: mesh, second: Spheres::new(spheres).expect("spheres") };
+    let brute = Structure::build(StructureKind::BruteForce, &joined, &Default::default());
+    let brute = brute.expect("nothing is built");
+    let rays: Vec<_> = (0..2000).map(|_| Ray::new(rng.in_cube(), rng.direction())).collect();
+    for preset in BuildPreset::ALL {
+        let bvh = Bvh::build_with(&joined, &preset.options()).expect("it builds");
+        bvh.validate().unwrap_or_else(|error| panic!("{}: {error}", preset.name()));
+        for ray in &rays {
+            assert_eq!(bvh.intersect(ray), brute.intersect(ray), "{}: {ray:?}", preset.name());
+        }
+    }
 }
 
 #[test]
