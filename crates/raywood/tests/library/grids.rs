@@ -1,6 +1,6 @@
 //! What only grids can get wrong: cells, planes, corners, resolutions, memory.
 
-use raywood::{BuildOptions, Counts, Ray, Structure, StructureKind, TriangleMesh, Vec3};
+use raywood::{BuildOptions, Counts, Ray, Spheres, Structure, StructureKind, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, rays, shapes};
 
 const GRIDS: &[StructureKind] = &[StructureKind::UniformGrid, StructureKind::NestedGrid];
@@ -91,6 +91,34 @@ fn extents_that_overflow_or_vanish_are_no_trouble() {
         let mesh = shapes::mapped(&base, |p| scale * p);
         let rays: Vec<_> = rays::against(&mesh, 500, 7).into_iter().filter(Ray::is_valid).collect();
         assert_same_hits(&mesh, &rays, &BuildOptions::default());
+    }
+}
+
+#[test]
+fn cells_at_the_end_of_all_numbers_are_sound() {
+    // Boxes longer than any number along one axis, and cells whose margins overflow.
+    for (count, size) in [(1, 1.0), (1, 0.0), (30, 1.0), (30, 1e-3)] {
+        let mut rng = Rng::new(12);
+        let mut corner = |number: i32| {
+            let p = rng.in_cube();
+            let x = if number % 2 == 0 { f32::MAX } else { f32::MIN };
+            Vec3::new(x, size * p.y, 0.5 * f32::MAX * p.z)
+        };
+        let mesh = triangles((0..count).map(|_| [0, 1, 2].map(&mut corner)).collect());
+        for &kind in GRIDS {
+            build(kind, &mesh);
+        }
+    }
+}
+
+#[test]
+fn spheres_are_in_the_cells_that_their_surface_reaches() {
+    let mut rng = Rng::new(13);
+    let spheres = (0..300).map(|_| (rng.in_cube(), rng.range(0.0, 0.3))).collect();
+    let spheres = Spheres::new(spheres).expect("sound spheres");
+    for &kind in GRIDS {
+        let grid = Structure::build(kind, &spheres, &BuildOptions::default()).expect("it builds");
+        grid.validate().unwrap_or_else(|error| panic!("{}: {error}", kind.name()));
     }
 }
 

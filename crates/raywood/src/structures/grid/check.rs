@@ -5,8 +5,8 @@ use super::pool::{Cell, GridPool};
 use crate::{Aabb, Geometry, ValidationError};
 
 impl GridPool {
-    /// Checks that the references of each cell lie in range and ascend, and that every cell that a primitive reaches into (its
-    /// [`clipped_bounds`](Geometry::clipped_bounds) there are not empty) refers to it or holds a grid in which this is so.
+    /// Checks that the references of each cell lie in range and ascend, and that every cell that a primitive reaches into (it
+    /// [`overlaps`](Geometry::overlaps), and its [`clipped_bounds`](Geometry::clipped_bounds) there are not empty) refers to it or holds a grid in which this is so.
     /// O(references * log of those in a cell).
     ///
     /// # Errors
@@ -64,7 +64,8 @@ impl GridPool {
                     let node = first_cell + lattice.number([x, y, z]);
                     let cell = lattice.cell_bounds([x, y, z]).intersection(&part);
                     let content = geometry.clipped_bounds(primitive, &cell);
-                    if content.is_empty() {
+                    // The corner of a sphere's box holds no part of it.
+                    if content.is_empty() || !geometry.overlaps(primitive, &cell) {
                         continue;
                     }
                     match self.cell(node) {

@@ -111,7 +111,10 @@ impl Lattice {
             let most = extent[axis] / (16.0 * f64::from(f32::EPSILON) * largest);
             (extent[axis] / edge).min(most).clamp(1.0, MAX_RESOLUTION) as i32
         });
-        let cell = [0, 1, 2].map(|axis| (extent[axis] / f64::from(resolution[axis])) as f32);
+        // A single cell may be longer than any number; none times infinity would be none.
+        let cell = [0, 1, 2].map(|axis| {
+            (extent[axis] / f64::from(resolution[axis])).min(f64::from(f32::MAX)) as f32
+        });
         Self { min, max, cell, resolution }
     }
 
@@ -216,7 +219,9 @@ impl Lattice {
     pub(super) fn widened_cell_bounds(&self, index: [i32; 3]) -> Aabb {
         let bounds = self.cell_bounds(index);
         let margin = crate::Vec3::from(self.cell.map(|edge| edge / 64.0));
-        Aabb::new(bounds.min - margin, bounds.max + margin)
+        // Near the largest number the sum overflows, and of a box without end no geometry can tell anything.
+        let (least, greatest) = (crate::Vec3::splat(f32::MIN), crate::Vec3::splat(f32::MAX));
+        Aabb::new((bounds.min - margin).max(least), (bounds.max + margin).min(greatest))
     }
 
     /// Where the cell of a number lies on each axis.
