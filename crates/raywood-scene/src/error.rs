@@ -100,8 +100,13 @@ pub(crate) fn one_line(text: &str) -> String {
 
 /// A piece of a file in quotes for a message: one line, shortened if long.
 pub(crate) fn quoted(bytes: &[u8]) -> String {
+    format!("`{}`", shortened(bytes))
+}
+
+/// A piece of a file for a message: one line, shortened if long.
+pub(crate) fn shortened(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);
     let dots = if bytes.len() > LONGEST { "..." } else { "" };
-    format!("`{}{dots}`", one_line(&shown))
+    format!("{}{dots}", one_line(&shown))
 }

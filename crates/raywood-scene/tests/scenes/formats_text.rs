@@ -132,7 +132,7 @@ fn mtl_materials() {
         "Kd 9 9 9\nnewmtl red paint\nKd 0.8 0.1 0.1 # red\nKs 0.5\nNs 200\nKe 1 2 3\nillum 2\nmap_Kd -s 1 1 1 paint.png\n\
          newmtl mirror\r\nKd 0 0 0\r\nKs 0.9 0.9 0.8\r\nillum 3\r\n\
          newmtl glass\nNi 1.5\nTf 0.9 1 0.9\nillum 7\n\
-         \tnewmtl veil\n\tTr 0.25\n\tKd 1 1 1\n\tNi 1.5\n\tillum 2\nd wrong\n",
+         \tnewmtl veil\n\tTr 0.25\n\tKd 1 7 1\n\tNi 1.5\n\tillum 2\nd wrong\n",
     );
     let scene = load_file(&path, &LoadOptions::default()).unwrap();
     check_scene(&scene);
@@ -255,6 +255,11 @@ fn ply_faults_name_their_place() {
         let error = error_of("t.ply", &text);
         assert!(error.starts_with(expected), "{text:?}: {error}, expected {expected}");
     }
+    let element = "n".repeat(900);
+    let long =
+        format!("ply\nformat ascii 1.0\nelement {element} 4\nproperty float x\nend_header\n1\n");
+    let error = error_of("t.ply", &long);
+    assert!(error.contains(&format!("promises 4 of element {}...,", &element[..40])), "{error}");
 
     // Binary: one index out of range, and a list that reaches past the end.
     let mut file = cube_ply(true);

@@ -4,7 +4,7 @@
 //!
 //! | MTL | here |
 //! | --- | --- |
-//! | `Kd` | diffuse, taken as linear light; times the opacity |
+//! | `Kd` | diffuse, taken as linear light, at most 1; times the opacity |
 //! | `Ks`, `Ns` | highlight, unless `illum` is 0 or 1 or `Ns` is below 1 |
 //! | `Ks` with `illum` 3, 5, 8 | mirror |
 //! | `d`, or 1 - `Tr` | opacity; what is not opaque is let through, tinted by `Tf` |
@@ -330,7 +330,7 @@ impl Definition {
         let opacity = if self.opacity_map.is_some() { 1.0 } else { self.opacity() };
         let is_glass = self.illumination.is_some() && ior > 1.0 && opacity == 1.0;
         let transmission = if is_glass { filter } else { (1.0 - opacity) * filter };
-        diffuse = if is_glass { Rgb::ZERO } else { opacity * diffuse };
+        diffuse = if is_glass { Rgb::ZERO } else { opacity * diffuse.min(Rgb::ONE) };
 
         Material {
             diffuse,

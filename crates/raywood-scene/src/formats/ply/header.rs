@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::{LoadError, Place, quoted};
+use crate::error::{LoadError, Place, quoted, shortened};
 use crate::formats::Input;
 use crate::formats::text::Cursor;
 
@@ -37,6 +37,7 @@ pub(super) enum Kind {
 /// A named value of an element.
 #[derive(Debug)]
 pub(super) struct Property {
+    /// Shortened if long: none that means anything is, and others are only shown.
     pub(super) name: String,
     pub(super) kind: Kind,
 }
@@ -44,6 +45,7 @@ pub(super) struct Property {
 /// A kind of thing in the file, and how many there are.
 #[derive(Debug)]
 pub(super) struct Element {
+    /// Shortened as those of properties are.
     pub(super) name: String,
     pub(super) count: usize,
     pub(super) properties: Vec<Property>,
@@ -175,7 +177,7 @@ impl Header {
 
     /// `element vertex 8`
     fn element(cursor: &mut Cursor<'_>) -> Result<Element, LoadError> {
-        let name = String::from_utf8_lossy(cursor.word()).into_owned();
+        let name = shortened(cursor.word());
         cursor.skip_blanks();
         let count = cursor.integer().and_then(|count| usize::try_from(count).ok());
         let Some(count) = count else {
@@ -200,7 +202,7 @@ impl Header {
             *cursor = before;
             kind
         };
-        let name = String::from_utf8_lossy(cursor.word()).into_owned();
+        let name = shortened(cursor.word());
         Ok(Property { name, kind })
     }
 
