@@ -1,14 +1,13 @@
 //! Files that are not there, not whole, or not what they seem: an error or a sound scene, never a panic.
 
 use std::fs;
-use std::panic::catch_unwind;
 
 use crate::formats_support::{
     Folder, Random, check_error, check_scene, cube_buffer, cube_json, cube_ply, error_of, glb,
-    load, square_stl, triangle_count,
+    load, square_stl, survives, triangle_count,
 };
 use raywood_scene::formats::FORMATS;
-use raywood_scene::{LoadOptions, load_bytes, load_file};
+use raywood_scene::{LoadOptions, load_file};
 
 /// A small sound file of each format and encoding.
 fn samples() -> Vec<(&'static str, Vec<u8>)> {
@@ -32,21 +31,6 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("a.glb", cube),
         ("a.gltf", gltf.into()),
     ]
-}
-
-/// Loads a file, strictly and not, and checks what comes of it; whether it loads at all.
-fn survives(folder: &Folder, name: &str, contents: &[u8]) -> bool {
-    let load = |strict| {
-        load_bytes(&folder.path(name), contents, &LoadOptions::default().with_strict(strict))
-    };
-    let outcomes = catch_unwind(|| [load(false), load(true)]);
-    let Ok([lax, strict]) = outcomes else { panic!("{name} panics: {contents:?}") };
-    for error in [&lax, &strict].into_iter().filter_map(|outcome| outcome.as_ref().err()) {
-        check_error(&error.to_string());
-    }
-    assert!(lax.is_ok() || strict.is_err(), "{name} loads only strictly: {contents:?}");
-    lax.iter().for_each(check_scene);
-    lax.is_ok()
 }
 
 #[test]

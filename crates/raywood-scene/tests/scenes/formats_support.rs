@@ -3,11 +3,12 @@
 #![allow(dead_code, unreachable_pub)]
 
 use std::fs;
+use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use raywood::Vec3;
-use raywood_scene::{LoadError, LoadOptions, Scene, load_file};
+use raywood_scene::{LoadError, LoadOptions, Scene, load_bytes, load_file};
 
 /// A folder of its own for a test, removed at its end.
 pub struct Folder(PathBuf);
@@ -110,6 +111,21 @@ pub fn check_scene(scene: &Scene) {
         assert!(camera.eye.is_finite() && camera.target != camera.eye, "{camera:?}");
     }
     assert!(scene.lights.iter().all(|light| light.intensity.is_finite()));
+}
+
+/// Loads a file, strictly and not, and checks what comes of it; whether it loads at all.
+pub fn survives(folder: &Folder, name: &str, contents: &[u8]) -> bool {
+    let load = |strict| {
+        load_bytes(&folder.path(name), contents, &LoadOptions::default().with_strict(strict))
+    };
+    let outcomes = catch_unwind(|| [load(false), load(true)]);
+    let Ok([lax, strict]) = outcomes else { panic!("{name} panics: {contents:?}") };
+    for error in [&lax, &strict].into_iter().filter_map(|outcome| outcome.as_ref().err()) {
+        check_error(&error.to_string());
+    }
+    assert!(lax.is_ok() || strict.is_err(), "{name} loads only strictly: {contents:?}");
+    lax.iter().for_each(check_scene);
+    lax.is_ok()
 }
 
 /// The number of triangles.
@@ -252,4 +268,70 @@ pub fn cube_json(more: &str) -> String {
 "accessors":[{{"bufferView":0,"componentType":5126,"count":8,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
 {{"bufferView":1,"componentType":5121,"count":36,"type":"SCALAR"}}]}}"#
     )
+}
+
+/// A PNG of these texels.
+pub fn png(width: u32, texels: &[[u8; 4]]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, texels.len() as u32 / width);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().unwrap().write_image_data(texels.as_flattened()).unwrap();
+    bytes
+}
+
+/// A gray JPEG of one block of 8 x 8 texels, 64 brighter than the middle: the constant coefficient alone, by tables of one code each.
+pub fn jpeg() -> Vec<u8> {
+    let mut bytes = vec![0xff, 0xd8];
+    bytes.extend([0xff, 0xdb, 0, 67, 0]);
+    bytes.extend([1; 64]);
+    bytes.extend([0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0]);
+    // The constant coefficient has 10 bits; all others end at once.
+    for (class, symbol) in [(0x00, 10), (0x10, 0)] {
+        bytes.extend([0xff, 0xc4, 0, 20, class, 1]);
+        bytes.extend([0; 15]);
+        bytes.push(symbol);
+    }
+    bytes.extend([0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0]);
+    // Code 0, the ten bits of 512, code 0, and ones to the end of the byte.
+    bytes.extend([0b0100_0000, 0b0000_1111, 0xff, 0xd9]);
+    bytes
+}
+
+/// A square of two triangles with both sets of texture coordinates and a tangent, materials and images as given; `images` are the buffer's further
+/// contents.
+pub fn textured_square(more: &str, images: &[&[u8]]) -> Vec<u8> {
+    let floats: &[f32] = &[
+        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, // positions
+        0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, // first set
+        0.0, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0, // second set
+        2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0,
+    ];
+    let mut buffer: Vec<u8> = floats.iter().flat_map(|f| f.to_le_bytes()).collect();
+    buffer.extend([0, 1, 2, 0, 2, 3, 0, 0]);
+    let views = [(0, 48), (48, 32), (80, 32), (112, 64), (176, 6)];
+    let mut views: Vec<String> = views
+        .map(|(start, length)| {
+            format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#)
+        })
+        .into();
+    for image in images {
+        let (start, length) = (buffer.len(), image.len());
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#));
+        buffer.extend_from_slice(image);
+    }
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},{more}"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"material":0,"indices":4,
+        "attributes":{{"POSITION":0,"TEXCOORD_0":1,"TEXCOORD_1":2,"TANGENT":3}}}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+        {{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}},
+        {{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}},
+        {{"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"}},
+        {{"bufferView":4,"componentType":5121,"count":6,"type":"SCALAR"}}],
+        "buffers":[{{"byteLength":{}}}],"bufferViews":[{}]}}"#,
+        buffer.len(),
+        views.join(",")
+    );
+    glb(&json, &buffer)
 }

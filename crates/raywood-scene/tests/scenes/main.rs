@@ -1,5 +1,6 @@
 //! The tests of scenes and formats, one subject per file, in one program.
 
+mod any_bytes;
 mod crossings_real;
 mod formats_gltf;
 mod formats_hostile;

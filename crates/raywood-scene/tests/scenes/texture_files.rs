@@ -4,73 +4,7 @@ use base64::Engine;
 use raywood::Vec3;
 use raywood_scene::{Encoding, Magnification, Material, Scene, SurfaceTextures, Wrap, load_file};
 
-use crate::formats_support::{Folder, check_error, check_scene, glb};
-
-/// A PNG of these texels.
-fn png(width: u32, texels: &[[u8; 4]]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, texels.len() as u32 / width);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header().unwrap().write_image_data(texels.as_flattened()).unwrap();
-    bytes
-}
-
-/// A gray JPEG of one block of 8 x 8 texels, 64 brighter than the middle: the constant coefficient alone, by tables of one code each.
-fn jpeg() -> Vec<u8> {
-    let mut bytes = vec![0xff, 0xd8];
-    bytes.extend([0xff, 0xdb, 0, 67, 0]);
-    bytes.extend([1; 64]);
-    bytes.extend([0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0]);
-    // The constant coefficient has 10 bits; all others end at once.
-    for (class, symbol) in [(0x00, 10), (0x10, 0)] {
-        bytes.extend([0xff, 0xc4, 0, 20, class, 1]);
-        bytes.extend([0; 15]);
-        bytes.push(symbol);
-    }
-    bytes.extend([0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0]);
-    // Code 0, the ten bits of 512, code 0, and ones to the end of the byte.
-    bytes.extend([0b0100_0000, 0b0000_1111, 0xff, 0xd9]);
-    bytes
-}
-
-/// A square of two triangles with both sets of texture coordinates and a tangent, materials and images as given; `images` are the buffer's further
-/// contents.
-fn square(more: &str, images: &[&[u8]]) -> Vec<u8> {
-    let floats: &[f32] = &[
-        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, // positions
-        0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, // first set
-        0.0, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0, // second set
-        2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0, 2.0, 0.0, 0.0, -1.0,
-    ];
-    let mut buffer: Vec<u8> = floats.iter().flat_map(|f| f.to_le_bytes()).collect();
-    buffer.extend([0, 1, 2, 0, 2, 3, 0, 0]);
-    let views = [(0, 48), (48, 32), (80, 32), (112, 64), (176, 6)];
-    let mut views: Vec<String> = views
-        .map(|(start, length)| {
-            format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#)
-        })
-        .into();
-    for image in images {
-        let (start, length) = (buffer.len(), image.len());
-        views.push(format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#));
-        buffer.extend_from_slice(image);
-    }
-    let json = format!(
-        r#"{{"asset":{{"version":"2.0"}},{more}"nodes":[{{"mesh":0}}],
-        "meshes":[{{"primitives":[{{"material":0,"indices":4,
-        "attributes":{{"POSITION":0,"TEXCOORD_0":1,"TEXCOORD_1":2,"TANGENT":3}}}}]}}],
-        "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
-        {{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"}},
-        {{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}},
-        {{"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"}},
-        {{"bufferView":4,"componentType":5121,"count":6,"type":"SCALAR"}}],
-        "buffers":[{{"byteLength":{}}}],"bufferViews":[{}]}}"#,
-        buffer.len(),
-        views.join(",")
-    );
-    glb(&json, &buffer)
-}
+use crate::formats_support::{Folder, check_error, check_scene, jpeg, png, textured_square};
 
 fn load(folder: &Folder, name: &str, contents: impl AsRef<[u8]>) -> Scene {
     let scene = load_file(&folder.write(name, contents), &Default::default()).unwrap();
@@ -97,7 +31,7 @@ fn images_inside_beside_and_in_the_json() {
         "materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}},"metallicRoughnessTexture":{{"index":1}}}},
         "emissiveTexture":{{"index":2}},"emissiveFactor":[1,1,1],"occlusionTexture":{{"index":1}}}}],"#
     );
-    let scene = load(&folder, "m.glb", square(&more, &[&inside]));
+    let scene = load(&folder, "m.glb", textured_square(&more, &[&inside]));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let found = textures(&scene.materials[0]);
     let image = |texture: Option<raywood_scene::Texture>| {
@@ -126,7 +60,7 @@ fn samplers_sets_transforms_and_shared_images() {
         "emissiveFactor":[1,1,1],
         "normalTexture":{"index":1,"scale":0.5,"extensions":{"KHR_texture_transform":{"offset":[0.125,0]}}}}],
         "extensionsUsed":["KHR_texture_transform"],"#;
-    let scene = load(&folder, "m.glb", square(more, &[&png(1, &[RED])]));
+    let scene = load(&folder, "m.glb", textured_square(more, &[&png(1, &[RED])]));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let found = textures(&scene.materials[0]);
     let color = found.color.expect("a texture");
@@ -152,7 +86,7 @@ fn alpha_is_cut_out_or_blended_as_the_material_says() {
             "materials":[{{"alphaMode":"{mode}","alphaCutoff":0.25,"pbrMetallicRoughness":{{
             "baseColorFactor":[1,1,1,0.5],"baseColorTexture":{{"index":0}}}}}}],"#
         );
-        load(&folder, "m.glb", square(&more, &[&image]))
+        load(&folder, "m.glb", textured_square(&more, &[&image]))
     };
     let (opaque, blend, mask) = (with("OPAQUE"), with("BLEND"), with("MASK"));
     assert_eq!(textures(&opaque.materials[0]).opacity, None);
@@ -179,7 +113,7 @@ fn missing_and_broken_images_are_shown_as_a_checker_and_said_once() {
         "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}},
         {"pbrMetallicRoughness":{"baseColorTexture":{"index":1}},"normalTexture":{"index":4}},
         {"pbrMetallicRoughness":{"baseColorTexture":{"index":2}},"emissiveTexture":{"index":3}}],"#;
-    let scene = load(&folder, "m.glb", square(more, &[]));
+    let scene = load(&folder, "m.glb", textured_square(more, &[]));
     let said = scene.warnings.join("\n");
     assert!(
         said.contains("images[0]: names the file `none.png`, which is not there (5 images in all are missing or broken): colours are shown as a magenta checker"),
@@ -206,7 +140,7 @@ fn formats_that_are_not_known_leave_the_plain_material() {
     let more = r#""images":[{"uri":"a.webp"}],"textures":[{"extensions":{"EXT_texture_webp":{"source":0}}},{}],
         "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"normalTexture":{"index":1}}],
         "extensionsUsed":["EXT_texture_webp"],"extensionsRequired":["EXT_texture_webp"],"#;
-    let scene = load(&folder, "m.glb", square(more, &[]));
+    let scene = load(&folder, "m.glb", textured_square(more, &[]));
     assert_eq!(
         scene.warnings,
         [
@@ -227,7 +161,7 @@ fn images_of_absurd_size_are_refused_at_once() {
         let mut image = png(1, &[RED]);
         image[16..20].copy_from_slice(&width.to_be_bytes());
         image[20..24].copy_from_slice(&height.to_be_bytes());
-        let path = folder.write("m.glb", square(more, &[&image]));
+        let path = folder.write("m.glb", textured_square(more, &[&image]));
         load_file(&path, &Default::default())
     };
     let error = with_size(100_000, 100_000).unwrap_err().to_string();

@@ -2,6 +2,7 @@
 
 mod all_hits;
 mod bounding_balls;
+mod build_and_query;
 mod closest_point;
 mod conformance;
 mod dynamic;
@@ -16,6 +17,7 @@ mod overlap;
 mod packets;
 mod refit;
 mod reinsertion;
+mod robustness;
 mod saved_forgeries;
 mod saved_trees;
 mod solid;
