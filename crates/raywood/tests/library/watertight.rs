@@ -1,6 +1,6 @@
 //! No ray gets through a closed mesh, and none that starts on a surface hits it again.
 
-use raywood::{BuildOptions, Bvh, Ray, TriangleMesh, Vec3};
+use raywood::{BuildOptions, Bvh, HitColumns, Ray, SimdLevel, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, rays, shapes};
 
 /// Closed meshes around a point that is well inside of each, with their size.
@@ -193,4 +193,125 @@ fn no_ray_leaks_beside_an_edge_of_large_triangles() {
             }
         }
     }
+}
+
+/// A closed sphere, or a plane with a frame of a tenth around what is aimed at.
+struct Wall {
+    name: String,
+    mesh: TriangleMesh,
+    /// Where rays start from: around a point, so far.
+    from: (Vec3, f32),
+    /// Which triangles are aimed at.
+    is_target: fn([Vec3; 3], Vec3) -> bool,
+    center: Vec3,
+}
+
+/// Spheres of so many subdivisions and planes, at the origin and far from it.
+fn walls(subdivisions: &[u32]) -> Vec<Wall> {
+    let mut walls = Vec::new();
+    for center in [Vec3::ZERO, Vec3::new(148376.0, 1234.0, -223423.0)] {
+        for &count in subdivisions {
+            walls.push(Wall {
+                name: format!("a sphere of {count} at {center:?}"),
+                mesh: shapes::uv_sphere(count, center, 2.0),
+                from: (center, 0.5),
+                is_target: |_, _| true,
+                center,
+            });
+            // Askew, so that no coordinate is the same for all.
+            let place = |i: u32| 4.0 * (i as f32 / count as f32 - 0.5);
+            let corner = |k: u32| {
+                let (x, z) = (place(k % (count + 1)), place(k / (count + 1)));
+                center + Vec3::new(x, 0.25 * z - 0.125 * x, z)
+            };
+            let positions: Vec<_> = (0..(count + 1) * (count + 1)).map(corner).collect();
+            let triangles = (0..count * count).flat_map(|k| {
+                let a = k / count * (count + 1) + k % count;
+                let [b, c, d] = [a + 1, a + count + 1, a + count + 2];
+                [[a, b, c], [b, d, c]]
+            });
+            let triangles = triangles.collect();
+            walls.push(Wall {
+                name: format!("a plane of {count} at {center:?}"),
+                mesh: TriangleMesh::new(positions, triangles).expect("a plane"),
+                from: (center + 3.0 * Vec3::Y, 0.5),
+                is_target: |corners, center| {
+                    corners.iter().all(|&p| (p - center).abs().max_element() < 1.8)
+                },
+                center,
+            });
+        }
+    }
+    walls
+}
+
+/// Aims so many rays at every wall, on every level of instructions and in every way to trace; returns how many there were.
+fn aim_at_walls(subdivisions: &[u32], count: usize) -> usize {
+    let mut rng = Rng::new(8);
+    let mut traced = 0;
+    for Wall { name, mesh, from: (start, reach), is_target, center } in walls(subdivisions) {
+        let targets: Vec<_> = (0..mesh.triangles().len() as u32)
+            .map(|triangle| mesh.corners(triangle))
+            .filter(|&corners| is_target(corners, center))
+            .collect();
+        let mut target = |number: usize| {
+            let [a, b, c] = targets[rng.below(targets.len())];
+            let (u, v) = (rng.unit(), rng.unit());
+            match number % 4 {
+                0 => a,
+                1 => 0.5 * (b + c),
+                2 => c + u * (a - c),
+                _ => (1.0 - u) * a + u * (1.0 - v) * b + u * v * c,
+            }
+        };
+        let aims: Vec<_> = (0..count).map(&mut target).collect();
+        // One half from one point, which travel as packets, the other from anywhere inside.
+        let mut origin = |number: usize| {
+            if number < count / 2 { start } else { start + reach * rng.in_cube() }
+        };
+        let rays: Vec<_> = aims
+            .iter()
+            .enumerate()
+            .map(|(number, &aim)| {
+                let from = origin(number);
+                // Some end, well behind the wall.
+                let ray = Ray::new(from, aim - from);
+                if number % 5 == 0 { ray.with_interval(0.0, 1.5) } else { ray }
+            })
+            .collect();
+        let mut bvh = Bvh::build(&mesh).expect("it builds");
+        for &level in SimdLevel::ALL.iter().filter(|level| level.is_available()) {
+            bvh.set_simd_level(level);
+            let (mut hits, mut occluded) = (vec![None; count], vec![false; count]);
+            bvh.intersect_batch(&rays, &mut hits);
+            bvh.occluded_batch(&rays, &mut occluded);
+            let directions: Vec<_> = rays[..count / 2].iter().map(|ray| ray.direction).collect();
+            let mut columns = HitColumns::default();
+            bvh.intersect_from(start, &directions, &mut columns);
+            for (number, ray) in rays.iter().enumerate() {
+                let in_packet = columns.get(number.min(count / 2 - 1));
+                let is_hit = hits[number].is_some() && occluded[number] && in_packet.is_some();
+                assert!(is_hit, "{level:?}, {name}: {ray:?} leaks");
+                if number % 8 == 0 {
+                    assert!(bvh.intersect(ray).is_some(), "{level:?}, {name}: {ray:?} leaks");
+                    assert!(bvh.occluded(ray), "{level:?}, {name}: {ray:?} is not blocked");
+                    // Vertices so far away are rounded to a lattice: the surface may be folded.
+                    assert_eq!(bvh.crossings(ray) % 2, 1, "{level:?}, {name}: {ray:?}");
+                }
+            }
+            traced += 2 * count;
+        }
+    }
+    traced
+}
+
+#[test]
+fn no_ray_leaks_through_spheres_and_planes_on_any_level() {
+    assert!(aim_at_walls(&[50, 100], 12_000) > 100_000);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release --test library -- --ignored millions_of_rays"]
+fn millions_of_rays_leak_through_no_sphere_or_plane_on_any_level() {
+    assert!(aim_at_walls(&[50, 75, 100, 150, 200], 500_000) > 10_000_000);
 }
