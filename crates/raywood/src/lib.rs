@@ -32,6 +32,8 @@
 //! - [`Bvh2`] is the tree itself: 32-byte nodes that can be read and checked, and through which [packets](Bvh2::intersect_packet) of rays can
 //!   walk together.
 //!
+//! Who knows Embree, `parry3d` or `bvh` finds what each of their calls becomes in `docs/migrating-from-embree.md` and `docs/migrating-from-parry3d-and-bvh.md`.
+//!
 //! # Contracts
 //!
 //! - Hits lie at `t_min <= t < t_max`, in units of the direction's length; directions need not be normalised.
@@ -91,3 +93,13 @@ pub use structures::{BruteForce, Bvh2, KdTree, NestedGrid, Octree, UniformGrid, 
 pub use traverse::{Coherence, Counts, Probe};
 pub use validate::ValidationError;
 pub use vec3::Vec3;
+
+/// The examples of the pages for who comes from other libraries, which nobody else compiles.
+#[cfg(doctest)]
+mod pages {
+    #[doc = include_str!("../../../docs/migrating-from-embree.md")]
+    struct FromEmbree;
+
+    #[doc = include_str!("../../../docs/migrating-from-parry3d-and-bvh.md")]
+    struct FromParry3dAndBvh;
+}
