@@ -16,6 +16,8 @@ pub struct HitColumns {
     pub v: Vec<f32>,
     /// Which primitive; [`HitColumns::NONE`] where nothing is hit.
     pub primitive: Vec<u32>,
+    /// Which instance, as [`Hit::instance`]; empty where there are no instances, which means 0 for all.
+    pub instance: Vec<u32>,
 }
 
 impl HitColumns {
@@ -29,12 +31,21 @@ impl HitColumns {
         columns
     }
 
-    /// Makes room for exactly `count` rays. New ones hit nothing.
+    /// Makes room for exactly `count` rays. New ones hit nothing, and there are no instances.
     pub fn resize(&mut self, count: usize) {
         self.t.resize(count, f32::INFINITY);
         self.u.resize(count, 0.0);
         self.v.resize(count, 0.0);
         self.primitive.resize(count, Self::NONE);
+        self.instance.clear();
+    }
+
+    /// Takes over hits, their instances too.
+    pub(crate) fn assign(&mut self, hits: &[Option<Hit>]) {
+        self.resize(hits.len());
+        let mut columns = self.as_mut();
+        hits.iter().enumerate().for_each(|(ray, hit)| columns.set(ray, *hit));
+        self.instance.extend(hits.iter().map(|hit| hit.map_or(0, |hit| hit.instance)));
     }
 
     /// How many rays.
@@ -54,7 +65,8 @@ impl HitColumns {
     /// If there is no such ray.
     pub fn get(&self, ray: usize) -> Option<Hit> {
         let (t, u, v, primitive) = (self.t[ray], self.u[ray], self.v[ray], self.primitive[ray]);
-        (primitive != Self::NONE).then_some(Hit { t, u, v, primitive, instance: 0 })
+        let instance = self.instance.get(ray).copied().unwrap_or(0);
+        (primitive != Self::NONE).then_some(Hit { t, u, v, primitive, instance })
     }
 
     /// What each ray hit, in order.
@@ -64,7 +76,7 @@ impl HitColumns {
 
     /// All columns, to be written.
     pub(crate) fn as_mut(&mut self) -> HitColumnsMut<'_> {
-        let Self { t, u, v, primitive } = self;
+        let Self { t, u, v, primitive, instance: _ } = self;
         HitColumnsMut { t, u, v, primitive }
     }
 }

@@ -74,8 +74,8 @@ pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
 pub use error::BuildError;
 pub use geometry::{
-    Geometry, Joined, MeshError, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres, SpheresError,
-    SurfacePoint, TriangleMesh,
+    Geometry, Joined, MeshError, MeshPart, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres,
+    SpheresError, SurfacePoint, TriangleMesh,
 };
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};

@@ -174,6 +174,20 @@ pub(crate) fn fill_pieces<I: Sync, O: Send>(
     f(inputs, outputs);
 }
 
+/// Has `f` write the outputs beside pieces of so many inputs. Both slices have the same length.
+pub(crate) fn fill_chunks<I: Sync, O: Send>(
+    inputs: &[I],
+    outputs: &mut [O],
+    size: usize,
+    f: impl Fn(&[I], &mut [O]) + Sync,
+) {
+    debug_assert_eq!(inputs.len(), outputs.len());
+    #[cfg(feature = "rayon")]
+    inputs.par_chunks(size).zip(outputs.par_chunks_mut(size)).for_each(|(i, o)| f(i, o));
+    #[cfg(not(feature = "rayon"))]
+    inputs.chunks(size).zip(outputs.chunks_mut(size)).for_each(|(i, o)| f(i, o));
+}
+
 /// Has `f` write the hits of a piece of the directions, piece by piece. There are as many of both.
 pub(crate) fn fill_columns(
     directions: &[Vec3],

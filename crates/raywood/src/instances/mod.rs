@@ -2,6 +2,7 @@
 
 mod change;
 mod error;
+mod many;
 mod place;
 mod point;
 mod traceable;
@@ -16,7 +17,10 @@ pub use traceable::{BoundsMargin, Traceable};
 pub use transform::{Transform, TransformError};
 
 use crate::structures::wide::top::TopTree;
-use crate::{Aabb, BuildOptions, Bvh, Hit, Ray, SimdLevel, SurfacePoint, TriangleMesh, parallel};
+use crate::{
+    Aabb, BuildOptions, Bvh, Hit, HitColumns, Ray, SimdLevel, SurfacePoint, TriangleMesh, Vec3,
+    parallel,
+};
 
 /// An object at a place.
 #[derive(Debug)]
@@ -72,6 +76,7 @@ impl<B> Clone for Instance<B> {
 ///   first: the numbers tell apart the instances of the lowest level, and [`locate`](Self::locate) says which of this scene's instances one belongs to.
 /// - At exactly equal `t` the lowest instance wins, and of it the primitive that its object finds: the lowest one, but where distances that differ there are one after rounding here.
 /// - No ray slips between triangles of one instance that share an edge.
+/// - Rays of batches that meet the same instance are traced through it together, which rounds differently: [`Hit::agrees_with`] says by how much. Answers never depend on the number of threads.
 /// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) do not count here.
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
 #[derive(Clone, Debug)]
@@ -188,24 +193,28 @@ impl<B: Traceable> Tlas<B> {
         self.any(ray, mask)
     }
 
-    /// [`intersect_masked`](Self::intersect_masked) for many rays, over all cores of the caller's rayon pool.
+    /// [`intersect_masked`](Self::intersect_masked) for many rays, those that meet the same instances together, over all cores of the caller's rayon pool.
     ///
     /// # Panics
     ///
     /// If the two slices differ in length.
     pub fn intersect_batch_masked(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "as many hits as rays");
-        parallel::fill(rays, hits, |ray| self.intersect_masked(ray, mask));
+        parallel::fill_chunks(rays, hits, many::MOST, |rays, hits| {
+            self.closest_of_many(rays, mask, hits);
+        });
     }
 
-    /// [`occluded_masked`](Self::occluded_masked) for many rays, over all cores of the caller's rayon pool.
+    /// [`occluded_masked`](Self::occluded_masked) for many rays, those that meet the same instances together, over all cores of the caller's rayon pool.
     ///
     /// # Panics
     ///
     /// If the two slices differ in length.
     pub fn occluded_batch_masked(&self, rays: &[Ray], mask: u32, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
-        parallel::fill(rays, occluded, |ray| self.occluded_masked(ray, mask));
+        parallel::fill_chunks(rays, occluded, many::MOST, |rays, occluded| {
+            self.any_of_many(rays, mask, occluded);
+        });
     }
 
     /// [`intersect`](Self::intersect) for many rays, over all cores of the caller's rayon pool.
@@ -224,6 +233,35 @@ impl<B: Traceable> Tlas<B> {
     /// If the two slices differ in length.
     pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         self.occluded_batch_masked(rays, u32::MAX, occluded);
+    }
+
+    /// [`intersect_batch`](Self::intersect_batch) on the calling thread.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn intersect_batch_serial(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "as many hits as rays");
+        self.intersect_many(rays, u32::MAX, hits);
+    }
+
+    /// [`occluded_batch`](Self::occluded_batch) on the calling thread.
+    ///
+    /// # Panics
+    ///
+    /// If the two slices differ in length.
+    pub fn occluded_batch_serial(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
+        self.occluded_many(rays, u32::MAX, occluded);
+    }
+
+    /// The closest hits of rays from one point, as [`Bvh::intersect_from`], on the calling thread.
+    pub fn intersect_from_serial(&self, origin: Vec3, directions: &[Vec3], hits: &mut HitColumns) {
+        let rays: Vec<_> =
+            directions.iter().map(|&direction| Ray::new(origin, direction)).collect();
+        let mut found = vec![None; rays.len()];
+        self.intersect_many(&rays, u32::MAX, &mut found);
+        hits.assign(&found);
     }
 
     /// The point that a ray hit, in the scene's space, from which the next ray can be spawned. `hit` must be this scene's answer to `ray`.
@@ -262,5 +300,17 @@ impl<B: Traceable> Traceable for Tlas<B> {
         let (index, instance) = self.locate(hit.instance);
         let place = &self.built.placements[index];
         place.point(ray, &Hit { instance, ..*hit })
+    }
+
+    fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
+        for (rays, hits) in rays.chunks(many::MOST).zip(hits.chunks_mut(many::MOST)) {
+            self.closest_of_many(rays, mask, hits);
+        }
+    }
+
+    fn occluded_many(&self, rays: &[Ray], mask: u32, occluded: &mut [bool]) {
+        for (rays, occluded) in rays.chunks(many::MOST).zip(occluded.chunks_mut(many::MOST)) {
+            self.any_of_many(rays, mask, occluded);
+        }
     }
 }

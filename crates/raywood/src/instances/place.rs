@@ -18,11 +18,11 @@ use crate::{
 /// An instance as rays meet it.
 #[derive(Debug)]
 pub(super) struct Placement<B> {
-    inverse: Inverse,
-    mask: u32,
+    pub(super) inverse: Inverse,
+    pub(super) mask: u32,
     /// The number of the first of its instances on the lowest level.
     pub(super) first: u32,
-    object: Arc<B>,
+    pub(super) object: Arc<B>,
     transform: Transform,
 }
 
@@ -174,14 +174,14 @@ impl<B: Traceable> Placement<B> {
 
     /// The closest hit with the instance up to a limit, which lies in the scene's units.
     #[inline(always)]
-    fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
+    pub(super) fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
         let seen = self.inverse.ray(ray);
         let hit = self.object.intersect_within(&seen.ray, seen.limit(limit), mask)?;
         Some(Hit { t: hit.t * seen.unit, instance: self.first + hit.instance, ..hit })
     }
 
     #[inline(always)]
-    fn occluded(&self, ray: &Ray, mask: u32) -> bool {
+    pub(super) fn occluded(&self, ray: &Ray, mask: u32) -> bool {
         self.object.occluded_within(&self.inverse.ray(ray).ray, mask)
     }
 
@@ -235,6 +235,6 @@ impl<B: Traceable> Tlas<B> {
 
 /// Whether a hit is nearer than another, or equally near in an instance of a lower number. An instance is met once, so equal numbers do not occur.
 #[inline(always)]
-fn is_nearer(hit: &Hit, best: Option<&Hit>) -> bool {
+pub(super) fn is_nearer(hit: &Hit, best: Option<&Hit>) -> bool {
     best.is_none_or(|best| hit.t < best.t || (hit.t == best.t && hit.instance < best.instance))
 }

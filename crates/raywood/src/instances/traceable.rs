@@ -56,6 +56,20 @@ pub trait Traceable: Send + Sync {
 
     /// The point that a ray hit. `hit` must be an answer to `ray`.
     fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint;
+
+    /// The closest hits of many rays at `t_min <= t < t_max`, on the calling thread: of as many places. What can trace rays together does so; the default asks one by one.
+    fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.intersect_within(ray, f32::INFINITY, mask);
+        }
+    }
+
+    /// The same for whether rays hit anything.
+    fn occluded_many(&self, rays: &[Ray], mask: u32, occluded: &mut [bool]) {
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = self.occluded_within(ray, mask);
+        }
+    }
 }
 
 /// How far beside a box a ray may pass that hits something inside of it, by rounding: a share of the largest coordinate of the ray's origin, and a length.
@@ -103,5 +117,13 @@ impl<G: Geometry + Send> Traceable for Bvh<G> {
             Some(corners) => ObjectPoint::on_triangle(corners, &point),
             None => ObjectPoint::from(point),
         }
+    }
+
+    fn intersect_many(&self, rays: &[Ray], _mask: u32, hits: &mut [Option<Hit>]) {
+        self.tree.intersect_batch(&self.geometry, rays, hits);
+    }
+
+    fn occluded_many(&self, rays: &[Ray], _mask: u32, occluded: &mut [bool]) {
+        self.tree.occluded_batch(&self.geometry, rays, occluded);
     }
 }

@@ -36,6 +36,7 @@ pub(crate) mod sweep;
 #[cfg(test)]
 mod tests;
 pub(crate) mod top;
+pub(crate) mod top_many;
 pub(crate) mod winding;
 
 use std::ops::ControlFlow;

@@ -48,6 +48,16 @@ pub(super) struct Slabs {
 }
 
 impl Slabs {
+    /// Those of no ray.
+    pub(super) const NONE: Self = Self {
+        reciprocal: [0.0; 3],
+        entry: [f32::MAX; 3],
+        exit: [f32::MIN; 3],
+        t_min: f32::NAN,
+        slack: SLACK,
+        sides: [Side::Smallest; 3],
+    };
+
     /// Those of a ray among boxes that reach no further from zero than `reach` along any axis.
     #[inline(always)]
     pub(super) fn new(ray: &PreparedRay, reach: f32) -> Self {

@@ -100,6 +100,23 @@ impl TopTree {
         self.bounds
     }
 
+    /// How many nodes lie on the longest way down; 0 if there is nothing.
+    pub(super) fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// A node by its number.
+    #[inline(always)]
+    pub(super) fn node(&self, number: u32) -> &WideNode {
+        &self.nodes[number as usize]
+    }
+
+    /// A ray among its boxes when these are larger by `margin`.
+    #[inline(always)]
+    pub(super) fn slabs(&self, ray: &PreparedRay, margin: f32) -> Slabs {
+        Slabs::new(ray, self.reach + margin).around(margin)
+    }
+
     /// How much memory it takes.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..])
@@ -202,35 +219,48 @@ impl<F: FnMut(u32, f32) -> ControlFlow<(), f32>> Kernel for Walk<'_, F> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { tree, ray, margin, mut limit, mut visit } = self;
+        let Self { tree, ray, margin, limit, visit } = self;
         if tree.nodes.is_empty() {
             return;
         }
-        let slabs = Slabs::new(ray, tree.reach + margin).around(margin);
-        let mut stack = TopStack::new(tree.depth);
-        let (keys, items) = stack.parts();
-        let (mut top, mut current) = (1, 0);
-        while current != END {
-            if current & 1 == 1 {
-                match visit(current >> 1, limit) {
-                    ControlFlow::Continue(next) => limit = next,
-                    ControlFlow::Break(()) => return,
-                }
-            } else {
-                let node = &tree.nodes[(current >> 1) as usize];
-                let (met, near) = slabs.children_met(simd, node, limit);
-                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
-            }
+        let slabs = tree.slabs(ray, margin);
+        walk_below(simd, tree, &slabs, 0, limit, visit);
+    }
+}
 
-            // On to the next that begins before the limit.
-            let end = end_of_keys(limit);
-            current = loop {
-                top -= 1;
-                if keys[top] <= end {
-                    break items[top];
-                }
-            };
+/// Tells `visit` of each entry at or below an item that a ray may meet up to a limit: see [`TopTree::walk`].
+#[inline(always)]
+pub(super) fn walk_below<S: Simd, F: FnMut(u32, f32) -> ControlFlow<(), f32>>(
+    simd: S,
+    tree: &TopTree,
+    slabs: &Slabs,
+    item: u32,
+    mut limit: f32,
+    mut visit: F,
+) {
+    let mut stack = TopStack::new(tree.depth);
+    let (keys, items) = stack.parts();
+    let (mut top, mut current) = (1, item);
+    while current != END {
+        if current & 1 == 1 {
+            match visit(current >> 1, limit) {
+                ControlFlow::Continue(next) => limit = next,
+                ControlFlow::Break(()) => return,
+            }
+        } else {
+            let node = &tree.nodes[(current >> 1) as usize];
+            let (met, near) = slabs.children_met(simd, node, limit);
+            top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
         }
+
+        // On to the next that begins before the limit.
+        let end = end_of_keys(limit);
+        current = loop {
+            top -= 1;
+            if keys[top] <= end {
+                break items[top];
+            }
+        };
     }
 }
 
