@@ -5,7 +5,7 @@ use std::fmt;
 use rayon::ThreadPool;
 use raywood::StructureKind;
 use raywood::{BuildError, BuildMemory, BuildOptions, BuildPreset, Bvh, Geometry, SavedTree};
-use raywood_render::{PreparedScene, Surfaces};
+use raywood_render::{PrepareError, PreparedScene, Surfaces};
 use raywood_scene::Scene;
 
 use crate::failure::Failure;
@@ -64,7 +64,10 @@ impl BuildArgs {
         let prepared = during_build(|watcher| {
             pool.install(|| PreparedScene::build_watched(scene, kind, &options, watcher))
         });
-        prepared.map_err(|error| self.failure(&error, kind, scene))
+        prepared.map_err(|error| match error {
+            PrepareError::Build(error) => self.failure(&error, kind, scene),
+            error => Failure::bad_input(error),
+        })
     }
 
     /// A tree for all kinds of queries, come by in the same way.

@@ -32,6 +32,22 @@ impl Loaded {
     }
 }
 
+/// As many triangles are copied for what cannot deal with instances: they and a tree over them take some five gigabytes.
+const MOST_COPIED: u64 = 30_000_000;
+
+impl Loaded {
+    /// Copies instances to where they stand, for `what` cannot deal with them.
+    pub(crate) fn without_instances(mut self, what: &str) -> Result<Self, Failure> {
+        self.scene.flatten(MOST_COPIED).map_err(|error| {
+            Failure::BadInput(format!(
+                "{}: {what} needs a scene without instances: {error}",
+                self.scene.name
+            ))
+        })?;
+        Ok(self)
+    }
+}
+
 /// Loads or makes the scene.
 pub(crate) fn load(name: &str, strict: bool) -> Result<Loaded, Failure> {
     let started = Instant::now();

@@ -6,6 +6,7 @@ mod answers;
 mod benchmark;
 mod comparison;
 pub mod figures;
+mod flat;
 pub mod frame_budget;
 pub mod lecture;
 pub mod ray_sets;

@@ -5,6 +5,7 @@ use raywood_render::fresnel::reflect;
 use raywood_render::{CameraError, CameraRays, PreparedScene, View, shadow_ray};
 
 use crate::answers::Answer;
+use crate::flat::structure_of;
 use crate::rng::Rng;
 
 /// The kinds of rays, from the most coherent to the least.
@@ -177,9 +178,9 @@ pub(crate) fn ray_sets_in(
 
     // What they hit.
     let mut hits = vec![None; primary.len()];
-    scene.structure().intersect_batch(&primary, &mut hits);
+    structure_of(scene).intersect_batch(&primary, &mut hits);
     let surface = |(ray, hit): (&Ray, &Option<Hit>)| {
-        hit.map(|hit| (*ray, facing(ray, scene.structure().surface_point(ray, &hit))))
+        hit.map(|hit| (*ray, facing(ray, structure_of(scene).surface_point(ray, &hit))))
     };
     let seen: Vec<(Ray, SurfacePoint)> = primary.iter().zip(&hits).filter_map(surface).collect();
 

@@ -138,6 +138,8 @@ pub enum RenderError {
         /// How many levels there are.
         levels: usize,
     },
+    /// What is to be shown is that of one structure, but the scene has instances, and a tree over trees.
+    Instances,
     /// Nothing can be seen through the camera.
     Camera(CameraError),
 }
@@ -187,6 +189,10 @@ impl fmt::Display for RenderError {
                     }
                 }
             }
+            Self::Instances => write!(
+                f,
+                "the scene has instances, and no single structure of which tests or boxes could be shown"
+            ),
             Self::Camera(error) => error.fmt(f),
         }
     }

@@ -1,15 +1,18 @@
 //! A scene made ready for rays: one structure over all its surfaces, and its materials in the form that shading reads.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
-use raywood::{Aabb, BuildError, BuildOptions, Geometry, Joined, SimdLevel, Spheres};
-use raywood::{Structure, StructureKind, TriangleMesh, Vec3};
+use raywood::{Aabb, BuildOptions, Geometry, Hit, Joined, SimdLevel, Spheres};
+use raywood::{Structure, StructureKind, StructureStats, TriangleMesh, Vec3};
 use raywood_scene::{Axes, Environment, Material, MaterialId, Rgb, Scene};
 
 use crate::few_boxes::few_boxes;
+use crate::instanced::{Instanced, Placed};
 use crate::light_sampling::to_angles;
+use crate::prepare_error::PrepareError;
 use crate::surface_material::SurfaceMaterial;
 use crate::textured::TexturedMaterial;
+use crate::tracer::Tracer;
 
 /// All surfaces of a scene: first its triangles, then its spheres.
 pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
@@ -17,7 +20,7 @@ pub type Surfaces<'a> = Joined<&'a TriangleMesh, &'a Spheres>;
 /// A scene made ready for rays. Borrows the scene, which therefore cannot change meanwhile.
 pub struct PreparedScene<'a> {
     scene: &'a Scene,
-    structure: Structure<Surfaces<'a>>,
+    tracer: Tracer<'a>,
     bounds: Aabb,
     materials: Vec<SurfaceMaterial>,
     triangle_count: u32,
@@ -36,21 +39,20 @@ impl<'a> PreparedScene<'a> {
     /// # Errors
     ///
     /// The structure cannot be built.
-    pub fn new(scene: &'a Scene) -> Result<Self, BuildError> {
+    pub fn new(scene: &'a Scene) -> Result<Self, PrepareError> {
         Self::with_structure(scene, StructureKind::default())
     }
 
     /// Builds a structure of the given kind over the scene's surfaces, on the threads of the current rayon pool. The picture does not
-    /// depend on the kind.
+    /// depend on the kind. Of a scene with instances each object gets one, and there is a tree over the instances: only [`StructureKind::BvhWide`] can that.
     ///
     /// A surface whose material number does not exist gets the default material.
     ///
     /// # Errors
     ///
-    /// The structure cannot be built.
-    pub fn with_structure(scene: &'a Scene, kind: StructureKind) -> Result<Self, BuildError> {
-        let structure = Structure::build(kind, Self::surfaces(scene), &BuildOptions::default())?;
-        Ok(Self::from_structure(scene, structure))
+    /// The structure cannot be built, or not over instances.
+    pub fn with_structure(scene: &'a Scene, kind: StructureKind) -> Result<Self, PrepareError> {
+        Self::build_watched(scene, kind, &BuildOptions::default(), |_| ControlFlow::Continue(()))
     }
 
     /// As [`with_structure`](Self::with_structure), built as the options say, while `watcher` is told how far the build is and may stop it: see
@@ -64,18 +66,29 @@ impl<'a> PreparedScene<'a> {
         kind: StructureKind,
         options: &BuildOptions,
         watcher: impl FnMut(f64) -> ControlFlow<()> + Send,
-    ) -> Result<Self, BuildError> {
+    ) -> Result<Self, PrepareError> {
+        if !scene.instances.is_empty() {
+            if kind != StructureKind::BvhWide {
+                return Err(PrepareError::Kind { kind, visible: scene.visible_triangles() });
+            }
+            let instanced = Instanced::build(scene, options, watcher)?;
+            return Ok(Self::with_tracer(scene, Tracer::Instances(instanced)));
+        }
         let structure = Structure::build_watched(kind, Self::surfaces(scene), options, watcher)?;
         Ok(Self::from_structure(scene, structure))
     }
 
-    /// All surfaces of a scene, for a structure over them.
+    /// All surfaces of a scene without instances, for a structure over them.
     pub fn surfaces(scene: &'a Scene) -> Surfaces<'a> {
         Joined { first: &scene.mesh.triangles, second: &scene.spheres }
     }
 
-    /// Takes a structure over the scene's [surfaces](Self::surfaces) that is already there.
+    /// Takes a structure over the scene's [surfaces](Self::surfaces) that is already there. For scenes without instances.
     pub fn from_structure(scene: &'a Scene, structure: Structure<Surfaces<'a>>) -> Self {
+        Self::with_tracer(scene, Tracer::Surfaces(structure))
+    }
+
+    fn with_tracer(scene: &'a Scene, tracer: Tracer<'a>) -> Self {
         // The default comes last, for the surfaces without a material.
         let mut materials: Vec<_> = scene
             .materials
@@ -91,7 +104,7 @@ impl<'a> PreparedScene<'a> {
         let is_textured = textured.iter().any(Option::is_some);
         let mut prepared = Self {
             scene,
-            structure,
+            tracer,
             bounds: scene.bounds(),
             materials,
             triangle_count: scene.mesh.triangles.len() as u32,
@@ -132,14 +145,55 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// The structure over the scene's surfaces.
-    pub fn structure(&self) -> &Structure<Surfaces<'a>> {
-        &self.structure
+    /// The structure over the scene's surfaces; `None` if it has instances, for which there is no single one.
+    pub fn structure(&self) -> Option<&Structure<Surfaces<'a>>> {
+        match &self.tracer {
+            Tracer::Surfaces(structure) => Some(structure),
+            Tracer::Instances(_) => None,
+        }
     }
 
-    /// Has other vector instructions trace the structure: see [`Structure::set_simd_level`].
+    /// What rays are sent through.
+    #[inline(always)]
+    pub(crate) fn tracer(&self) -> &Tracer<'a> {
+        &self.tracer
+    }
+
+    /// Counts, memory and quality of the structure. Of a scene with instances nodes, leaves and memory of all trees together, and the depth of the deepest below the one over
+    /// instances; levels and quality are those of no single tree and left out. O(size of the structure).
+    pub fn stats(&self) -> StructureStats {
+        match &self.tracer {
+            Tracer::Surfaces(structure) => structure.stats(),
+            Tracer::Instances(instanced) => instanced.stats(),
+        }
+    }
+
+    /// The vector instructions that trace the scene; `None` where none are used.
+    pub fn simd_level(&self) -> Option<SimdLevel> {
+        self.tracer.simd_level()
+    }
+
+    /// Has other vector instructions trace the structure: see [`Structure::set_simd_level`]. Those of objects stay as they were when these were built.
     pub fn set_simd_level(&mut self, level: SimdLevel) {
-        self.structure.set_simd_level(level);
+        match &mut self.tracer {
+            Tracer::Surfaces(structure) => structure.set_simd_level(level),
+            Tracer::Instances(instanced) => instanced.tree.set_simd_level(level),
+        }
+    }
+
+    /// How surfaces of an instance are shaded; `None` where they stand in the world as they are.
+    #[inline(always)]
+    pub(crate) fn placed(&self, instance: u32) -> Option<&Placed> {
+        match &self.tracer {
+            Tracer::Surfaces(_) => None,
+            Tracer::Instances(instanced) => instanced.placed(instance),
+        }
+    }
+
+    /// Whether it has instances.
+    #[inline(always)]
+    pub(crate) fn has_instances(&self) -> bool {
+        matches!(self.tracer, Tracer::Instances(_))
     }
 
     /// The number of the triangle that a primitive is, or else that of the sphere.
@@ -151,10 +205,10 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// The material of a primitive.
+    /// The material of an element.
     #[inline(always)]
-    pub(crate) fn material_of(&self, primitive: u32) -> &SurfaceMaterial {
-        &self.materials[self.material_index(primitive)]
+    pub(crate) fn material_of(&self, element: impl Into<Element>) -> &SurfaceMaterial {
+        &self.materials[self.material_index(element)]
     }
 
     /// A material by its [number](Self::material_index).
@@ -169,26 +223,44 @@ impl<'a> PreparedScene<'a> {
         self.materials.len() as u32
     }
 
-    /// The number of the material of a primitive.
+    /// The number of the material of an element.
     #[inline(always)]
-    pub(crate) fn material_index(&self, primitive: u32) -> usize {
+    pub(crate) fn material_index(&self, element: impl Into<Element>) -> usize {
+        let Element { primitive, instance } = element.into();
+        let last = self.materials.len() - 1;
+        if let Some(id) = self.placed(instance).and_then(|placed| placed.material) {
+            return (id as usize).min(last);
+        }
         let id = match self.which(primitive) {
             Which::Triangle(triangle) => self.scene.mesh.materials.get(triangle as usize),
             Which::Sphere(sphere) => self.scene.sphere_materials.get(sphere as usize),
         };
-        let last = self.materials.len() - 1;
         id.map_or(last, |&id: &MaterialId| (id as usize).min(last))
     }
 
-    /// How many primitives there are.
-    pub(crate) fn primitive_count(&self) -> u32 {
-        self.structure.geometry().len() as u32
+    /// Everything that is to be seen: the elements of what stands in the world, then those of each instance.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = Element> + '_ {
+        let Scene { mesh, instances, spheres, .. } = self.scene;
+        let in_world =
+            |primitives: Range<u32>| primitives.map(|primitive| Element { primitive, instance: 0 });
+        let own = in_world(0..instances.own_triangles(&mesh.triangles));
+        let balls = in_world(self.triangle_count..self.triangle_count + spheres.len() as u32);
+        let objects: Vec<_> = instances.objects().collect();
+        let placed = (1..).zip(instances.placed()).flat_map(move |(instance, placed)| {
+            let triangles = objects[placed.object as usize].clone();
+            triangles.map(move |primitive| Element { primitive, instance })
+        });
+        own.chain(balls).chain(placed)
     }
 
-    /// The corners of a triangle of the mesh.
+    /// The corners of a triangle, in the world.
     #[inline]
-    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.scene.mesh.triangles.corners(triangle)
+    pub(crate) fn corners(&self, triangle: u32, instance: u32) -> [Vec3; 3] {
+        let corners = self.scene.mesh.triangles.corners(triangle);
+        match self.placed(instance) {
+            None => corners,
+            Some(placed) => corners.map(|corner| placed.to_world.point(corner)),
+        }
     }
 
     /// The light that a material sends out, by its [number](Self::material_index), in the mean over its texture.
@@ -231,13 +303,52 @@ impl<'a> PreparedScene<'a> {
         if !self.materials.iter().any(&is_wanted) {
             return Vec::new();
         }
-        let geometry = self.structure.geometry();
-        let wanted = |primitive: &u32| is_wanted(&self.materials[self.material_index(*primitive)]);
-        let primitives = (0..geometry.len() as u32).filter(wanted);
+        let wanted = |element: &Element| is_wanted(self.material_of(*element));
+        let boxes = match self.has_instances() {
+            false => {
+                let surfaces = Self::surfaces(self.scene);
+                let elements = self.elements().filter(wanted);
+                elements.map(|element| surfaces.bounds(element.primitive)).collect()
+            }
+            true => self.instanced_bounds(is_wanted),
+        };
         // More boxes than this cost a shadow ray more than they save; holes are often many small things all over the place.
         let has_holes = self.materials.iter().any(|material| material.perforated);
         let most = if has_holes { 32 } else { 8 };
-        few_boxes(primitives.map(|primitive| geometry.bounds(primitive)).collect(), most)
+        few_boxes(boxes, most)
+    }
+
+    /// The same of a scene with instances, before there are few: a box for each instance.
+    fn instanced_bounds(&self, is_wanted: impl Fn(&SurfaceMaterial) -> bool) -> Vec<Aabb> {
+        let Scene { mesh, instances, .. } = self.scene;
+        let surfaces = Self::surfaces(self.scene);
+        let wanted = |element: &Element| is_wanted(self.material_of(*element));
+        let in_world = self.elements().take_while(|element| element.instance == 0).filter(wanted);
+        let mut boxes: Vec<_> =
+            in_world.map(|element| surfaces.bounds(element.primitive)).collect();
+
+        // Each object once, unless an instance has a material for all of it.
+        let around = |range: Range<u32>| {
+            let elements = range.map(|primitive| Element { primitive, instance: 0 });
+            let bounds = elements.filter(wanted).map(|element| surfaces.bounds(element.primitive));
+            bounds.fold(Aabb::EMPTY, |all, one| all.union(one))
+        };
+        let parts: Vec<_> = instances.objects().map(around).collect();
+        let whole = instances.object_bounds(&mesh.triangles);
+        for placed in instances.placed() {
+            let object = placed.object as usize;
+            let bounds = match placed.material {
+                None => parts[object],
+                Some(id) if is_wanted(self.material(id.min(self.material_count() - 1))) => {
+                    whole[object]
+                }
+                Some(_) => Aabb::EMPTY,
+            };
+            if !bounds.is_empty() {
+                boxes.push(placed.transform.bounds(&bounds));
+            }
+        }
+        boxes
     }
 }
 
@@ -246,6 +357,21 @@ impl<'a> PreparedScene<'a> {
 fn in_panorama(panorama: &Environment, direction: Vec3) -> Rgb {
     let [down, turn] = to_angles(direction);
     panorama.light(turn, down)
+}
+
+/// A primitive of an instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Element {
+    pub(crate) primitive: u32,
+    /// 0 for what stands in the world as it is.
+    pub(crate) instance: u32,
+}
+
+impl From<&Hit> for Element {
+    #[inline(always)]
+    fn from(hit: &Hit) -> Self {
+        Self { primitive: hit.primitive, instance: hit.instance }
+    }
 }
 
 /// Which kind of surface a primitive is, and its number among those.

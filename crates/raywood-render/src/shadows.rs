@@ -80,13 +80,13 @@ pub(crate) fn passage(
     hit: &Hit,
     opaque: bool,
 ) -> Option<Passage> {
-    let material = prepared.material_of(hit.primitive);
+    let material = prepared.material_of(hit);
     let opacity = if material.perforated { opacity_at(prepared, hit) } else { 1.0 };
     let transmissive = material.transmissive && !opaque;
     if !transmissive && opacity >= 1.0 {
         return None;
     }
-    let surface = prepared.structure().surface_point(ray, hit);
+    let surface = prepared.tracer().surface_point(ray, hit);
     let length = ray.direction.length();
     let cosine = ray.direction.dot(surface.normal) / length;
     let share = if transmissive { filter(material, cosine, hit.t * length) } else { Rgb::ZERO };

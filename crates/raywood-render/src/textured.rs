@@ -183,7 +183,7 @@ pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
 
 /// The light that a surface sends out at a hit, as close up: for whoever chooses points on lights. What is not there sends out none.
 pub(crate) fn emission_at(scene: &PreparedScene<'_>, hit: &Hit) -> Rgb {
-    let whole = scene.material_of(hit.primitive).emission;
+    let whole = scene.material_of(hit).emission;
     let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap | Slot::Emission);
     show_close_up(scene, hit, is_wanted).map_or(whole, |(material, shown)| {
         opacity(material.textures, &shown) * (whole * rgb(shown[Slot::Emission as usize]))
@@ -196,7 +196,7 @@ fn show_close_up<'a>(
     hit: &Hit,
     is_wanted: impl Fn(Slot) -> bool,
 ) -> Option<(&'a TexturedMaterial<'a>, Shown)> {
-    let material = scene.textured_material(scene.material_index(hit.primitive) as u32)?;
+    let material = scene.textured_material(scene.material_index(hit) as u32)?;
     let Which::Triangle(triangle) = scene.which(hit.primitive) else { return None };
     let mesh = &scene.scene().mesh;
     let corners = mesh.triangles.triangles()[triangle as usize];

@@ -6,8 +6,10 @@ mod camera;
 mod color;
 mod environment;
 mod error;
+mod flatten;
 pub mod formats;
 mod framing;
+mod instances;
 mod light;
 mod load;
 mod material;
@@ -27,9 +29,11 @@ pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
 pub use environment::{Environment, load_environment};
 pub use error::{LoadError, Place};
+pub use flatten::TooManyTriangles;
 pub use framing::{
     Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,
 };
+pub use instances::{Instance, Instances, InstancesError};
 pub use light::{Light, LightKind};
 pub use load::{LoadOptions, load_bytes, load_file};
 pub use material::{Material, MaterialId};

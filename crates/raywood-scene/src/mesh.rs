@@ -4,7 +4,7 @@ use raywood::{TriangleMesh, Vec3};
 
 use crate::{MaterialId, Rgb};
 
-/// All triangles of a scene, in world space.
+/// All triangles of a scene: in world space, those of [objects](crate::Instances) in their own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Positions and indices.

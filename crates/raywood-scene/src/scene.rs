@@ -1,16 +1,18 @@
 //! The scene: everything that a picture needs.
 
-use raywood::{Aabb, Spheres, Vec3};
+use raywood::{Aabb, MeshPart, Spheres, Vec3};
 
-use crate::{Camera, Light, Material, MaterialId, Mesh, Rgb, TextureImage};
+use crate::{Camera, Instances, Light, Material, MaterialId, Mesh, Rgb, TextureImage};
 
 /// Surfaces, materials, lights and cameras.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// What it is called: the built-in's or the file's name.
     pub name: String,
-    /// All triangles.
+    /// All triangles: first those that stand in the world, then those of objects that [instances](Self::instances) show.
     pub mesh: Mesh,
+    /// Objects, and where they stand.
+    pub instances: Instances,
     /// Analytic spheres.
     pub spheres: Spheres,
     /// The material of each sphere.
@@ -66,6 +68,14 @@ impl Background {
 impl Scene {
     /// The box around everything; empty if there is nothing.
     pub fn bounds(&self) -> Aabb {
-        self.mesh.triangles.total_bounds().union(self.spheres.total_bounds())
+        let triangles = &self.mesh.triangles;
+        let own = match self.instances.is_empty() {
+            true => triangles.total_bounds(),
+            false => {
+                MeshPart::new(triangles, 0..self.instances.own_triangles(triangles)).total_bounds()
+            }
+        };
+        let instances = self.instances.bounds(triangles).into_iter();
+        instances.fold(own.union(self.spheres.total_bounds()), |all, one| all.union(one))
     }
 }

@@ -95,6 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
+    let loaded = loaded.without_instances("a benchmark of structures")?;
     let Loaded { mut scene, tree, .. } = loaded;
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();

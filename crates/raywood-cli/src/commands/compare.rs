@@ -97,6 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
+    let loaded = loaded.without_instances("a comparison of structures")?;
     let Loaded { mut scene, tree, .. } = loaded;
     args.view.orient(&mut scene);
 
@@ -147,15 +148,16 @@ fn heat_maps<'a>(
         if f64::from(width * height) / speed > MAP_SECONDS {
             left_out.push(structure.kind().name());
         } else {
-            prepared.push(PreparedScene::from_structure(scene, structure));
+            let kind = structure.kind();
+            prepared.push((kind, PreparedScene::from_structure(scene, structure)));
         }
     }
 
     let mut all = Vec::new();
     for quantity in [HeatQuantity::Nodes, HeatQuantity::Primitives] {
         let mut maps = Vec::new();
-        for prepared in &prepared {
-            step(&format!("heat map of {}", prepared.structure().kind().name()));
+        for (kind, prepared) in &prepared {
+            step(&format!("heat map of {}", kind.name()));
             let map = heat_map(prepared, camera, &options, quantity, &Progress::new());
             maps.push(map.map_err(Failure::bad_input)?);
         }

@@ -51,9 +51,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
     let kind = args.structure.unwrap_or_default();
+    let loaded = match kind == StructureKind::default() {
+        true => loaded,
+        false => loaded.without_instances("another structure")?,
+    };
     let prepared = args.build.prepare(&loaded.scene, loaded.tree.as_ref(), kind, &pool)?;
-    let stats = prepared.structure().stats();
-    let level = prepared.structure().simd_level();
+    let stats = prepared.stats();
+    let level = prepared.simd_level();
     if args.json {
         print::json(&as_json(&loaded, kind, &stats, level))
     } else {
@@ -74,6 +78,15 @@ fn as_text(
     let mut line = |name: &str, value: &str| text += &format!("{name:<11}{value}\n");
 
     line("triangles", &thousands(mesh.triangles.len() as u64));
+    if !scene.instances.is_empty() {
+        let (objects, places) = (scene.instances.objects().len(), scene.instances.placed().len());
+        let visible = thousands(scene.visible_triangles());
+        let places = thousands(places as u64);
+        line(
+            "instances",
+            &format!("{places} of {objects} objects, {visible} triangles to be seen"),
+        );
+    }
     line("vertices", &thousands(mesh.triangles.positions().len() as u64));
     if scene.spheres.len() > 0 {
         line("spheres", &thousands(scene.spheres.len() as u64));
@@ -95,7 +108,19 @@ fn as_text(
     } else {
         line("bounds", &format!("{} to {}", point(bounds.min), point(bounds.max)));
     }
-    line("structure", &format!("{}: {stats}", kind.name()));
+    line(
+        "structure",
+        &match scene.instances.is_empty() {
+            true => format!("{}: {stats}", kind.name()),
+            false => format!(
+                "{}: a tree over trees, {} nodes, depth {} at most below, {:.1} MB",
+                kind.name(),
+                thousands(stats.nodes as u64),
+                stats.depth,
+                stats.bytes as f64 / 1e6
+            ),
+        },
+    );
     line("traced by", instructions(level));
 
     line("materials", &scene.materials.len().to_string());
@@ -185,6 +210,9 @@ fn as_json(
         "scene": scene.name,
         "load_seconds": time.as_secs_f64(),
         "triangles": scene.mesh.triangles.len(),
+        "visible_triangles": scene.visible_triangles(),
+        "objects": scene.instances.objects().len(),
+        "instances": scene.instances.placed().len(),
         "vertices": scene.mesh.triangles.positions().len(),
         "spheres": scene.spheres.len(),
         "bounds": if bounds.is_empty() { Value::Null } else {

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let scenes = match &args.scene {
         Some(name) => {
             let load = || pool.install(|| scene_source::load(name, false));
-            vec![during_step("loading", load)?.scene]
+            vec![during_step("loading", load)?.without_instances("the lecture")?.scene]
         }
         None => during_step("making scenes", || pool.install(|| default_scenes(args.quick))),
     };

@@ -200,6 +200,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
+    let loaded = loaded.without_instances("a query")?;
     let scene = &loaded.scene;
     let tree = args.build.tree(scene, loaded.tree.as_ref(), &pool)?;
 

@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use raywood::BuildError;
-use raywood_render::{CameraError, RenderError};
+use raywood_render::{CameraError, PrepareError, RenderError};
 
 use crate::Mismatch;
 
@@ -12,7 +11,7 @@ use crate::Mismatch;
 #[non_exhaustive]
 pub enum BenchmarkError {
     /// The reference to hold answers against cannot be built.
-    Build(BuildError),
+    Build(PrepareError),
     /// Nothing can be seen through the camera.
     Camera(CameraError),
     /// The picture cannot be rendered.

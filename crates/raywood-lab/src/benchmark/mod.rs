@@ -11,6 +11,7 @@ mod team;
 use raywood::{Geometry, SimdLevel, StructureKind};
 use raywood_render::{PreparedScene, RenderOptions, View};
 
+use crate::flat::structure_of;
 use crate::{RayKind, RaySetSummary};
 pub use clock::Clock;
 pub use error::BenchmarkError;
@@ -84,7 +85,7 @@ pub fn benchmark(
     numbers.dedup();
     let mut teams = numbers.into_iter().map(Team::new).collect::<Result<Vec<_>, _>>()?;
 
-    let level = scene.structure().simd_level();
+    let level = structure_of(scene).simd_level();
     let levels = SimdLevel::available().filter(|other| level.is_some_and(|most| *other <= most));
     let levels: Vec<_> = levels.collect();
     let measured = rays::measure(scene, view, options, &levels, &mut teams, &mut step);
@@ -94,8 +95,8 @@ pub fn benchmark(
     let (ray_sets, rays) = measured?;
     let pictures = pictures::measure(scene, view, options, &rays, &mut teams, &mut step)?;
     Ok(Benchmark {
-        primitives: scene.structure().geometry().len(),
-        structure: scene.structure().kind(),
+        primitives: structure_of(scene).geometry().len(),
+        structure: structure_of(scene).kind(),
         level,
         levels,
         clocks: teams.iter().map(Team::clock).collect(),

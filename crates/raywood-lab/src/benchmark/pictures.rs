@@ -6,6 +6,7 @@ use raywood_render::{Image, PreparedScene, Progress, RayCounts, View, render};
 
 use super::{BenchmarkError, BenchmarkOptions, RaySpeed, Speed, Team};
 use crate::RayKind;
+use crate::flat::structure_of;
 use crate::timing::{seconds, take_turns};
 
 /// Pictures are rendered no longer than for so many seconds, if not for one of them.
@@ -41,7 +42,7 @@ pub(super) fn measure(
 ) -> Result<Pictures, BenchmarkError> {
     let (width, height) = (options.picture.width, options.picture.height);
     let mut pictures = Pictures { width, height, ..Pictures::default() };
-    let level = scene.structure().simd_level();
+    let level = structure_of(scene).simd_level();
     let primary = |rays: &&RaySpeed| rays.kind == RayKind::Primary && rays.level == level;
     let speed = rays.iter().find(primary).map(|rays| &rays.speed);
     let per_ray = speed.map_or(0.0, |speed| speed.threads as f64 * speed.seconds_per_ray());

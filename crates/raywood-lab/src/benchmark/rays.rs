@@ -5,6 +5,7 @@ use raywood_render::{PreparedScene, View};
 
 use super::{BenchmarkError, BenchmarkOptions, Speed, Team};
 use crate::answers::{Answer, answers, check_agreement};
+use crate::flat::structure_of;
 use crate::ray_sets::{RayKind, RaySet, RaySetSummary, ray_sets};
 use crate::timing::take_turns;
 use crate::tracing::{affordable, trace};
@@ -47,7 +48,7 @@ impl Variant {
 
     /// What answers call it.
     fn name(&self, scene: &PreparedScene<'_>, teams: &[Team]) -> String {
-        let structure = scene.structure().kind().name();
+        let structure = structure_of(scene).kind().name();
         let level = self.level.map_or("", SimdLevel::name);
         format!("{structure} {level} on {} threads", teams[self.team].threads())
     }
@@ -67,18 +68,18 @@ pub(super) fn measure(
     let reference = most.run(|| build_reference(scene))?;
     step("choosing rays");
     // By the faster of the two: the one that is measured may be slow.
-    let has_default = scene.structure().kind() == StructureKind::default();
+    let has_default = structure_of(scene).kind() == StructureKind::default();
     let fast = if has_default { &*scene } else { &reference };
     let aspect = options.picture.width as f32 / options.picture.height as f32;
     let sets = most.run(|| ray_sets(fast, view, aspect, options.rays));
     let mut sets = sets.map_err(BenchmarkError::Camera)?;
 
-    let variants = Variant::all(scene.structure().simd_level(), levels, teams.len());
+    let variants = Variant::all(structure_of(scene).simd_level(), levels, teams.len());
     let mut summaries = Vec::new();
     for set in &mut sets {
         step(&format!("checking {} rays", set.kind.name()));
         // A slow structure traces a sample.
-        let sample = set.sample(teams[0].run(|| affordable(scene.structure(), set)));
+        let sample = set.sample(teams[0].run(|| affordable(structure_of(scene), set)));
         set.rays = sample.into_iter().map(|index| set.rays[index]).collect();
         let answers = check(scene, set, &variants, teams)?;
         let most = &teams[teams.len() - 1];
@@ -94,7 +95,7 @@ pub(super) fn measure(
 
 /// A structure to hold answers against: the default one, and for that itself brute force, which can hardly be wrong.
 fn build_reference<'a>(scene: &PreparedScene<'a>) -> Result<PreparedScene<'a>, BenchmarkError> {
-    let kind = match scene.structure().kind() {
+    let kind = match structure_of(scene).kind() {
         kind if kind == StructureKind::default() => StructureKind::BruteForce,
         _ => StructureKind::default(),
     };
@@ -111,7 +112,7 @@ fn check(
     let mut first: Option<(String, Vec<Answer>)> = None;
     for variant in variants {
         variant.prepare(scene);
-        let structure = scene.structure();
+        let structure = structure_of(scene);
         let found = teams[variant.team].run(|| answers(structure, set.kind, &set.rays));
         let name = variant.name(scene, teams);
         match &first {
@@ -130,8 +131,8 @@ fn check_against_reference(
     reference: &PreparedScene<'_>,
     set: &RaySet,
 ) -> Result<(), BenchmarkError> {
-    let both = [reference.structure(), scene.structure()];
-    let sample = set.sample(affordable(reference.structure(), set));
+    let both = [structure_of(reference), structure_of(scene)];
+    let sample = set.sample(affordable(structure_of(reference), set));
     let rays: Vec<_> = sample.into_iter().map(|index| set.rays[index]).collect();
     let [expected, found] = both.map(|structure| answers(structure, set.kind, &rays));
     let [expecting, finding] = both.map(|structure| structure.kind().name());
@@ -161,7 +162,7 @@ fn time(
         let (set, variant) = contestants[number];
         let (kind, rays) = (sets[set].kind, &rays[set][variant.team]);
         variant.prepare(scene);
-        Some(teams[variant.team].measure(|| trace(scene.structure(), kind, rays)))
+        Some(teams[variant.team].measure(|| trace(structure_of(scene), kind, rays)))
     });
     let speed = |(&(set, variant), timing): (&(usize, &Variant), _)| {
         let rays = rays[set][variant.team].len() as u64;

@@ -6,6 +6,7 @@ use raywood_render::{PreparedScene, Surfaces, View};
 
 use super::{CompareError, CompareOptions, Comparison, RaySetSummary, StructureReport, Traces};
 use crate::answers::{Answer, answers, check_agreement};
+use crate::flat::structure_of;
 use crate::ray_sets::{RayKind, RaySet, ray_sets};
 use crate::timing::{Timing, seconds, take_turns};
 use crate::tracing::{affordable, trace};
@@ -36,7 +37,7 @@ pub fn compare<'a>(
     let sets = ray_sets(reference, view, options.aspect, options.rays);
     let sets = sets.map_err(CompareError::Camera)?;
     let expected: Vec<_> =
-        sets.iter().map(|set| answers(reference.structure(), set.kind, &set.rays)).collect();
+        sets.iter().map(|set| answers(structure_of(reference), set.kind, &set.rays)).collect();
 
     let surfaces = PreparedScene::surfaces(reference.scene());
     let (structures, builds) = build(&options.kinds, surfaces, &options.build, &mut step)?;
@@ -57,7 +58,7 @@ pub fn compare<'a>(
         for structure in &structures {
             step(&format!("checking {} rays: {}", set.kind.name(), structure.kind().name()));
             let sample = set.sample(affordable(structure, set));
-            check(reference.structure(), structure, set, expected, &sample)?;
+            check(structure_of(reference), structure, set, expected, &sample)?;
             samples.push(sample.into_iter().map(|index| set.rays[index]).collect::<Vec<_>>());
         }
 
@@ -157,7 +158,7 @@ mod tests {
         let prepared = PreparedScene::new(&scene).expect("it builds");
         let view = default_view(&prepared, 1.6);
         for set in ray_sets(&prepared, &view, 1.6, 640).expect("a camera") {
-            let structure = prepared.structure();
+            let structure = structure_of(prepared);
             let mut expected = answers(structure, set.kind, &set.rays);
             let sample = set.sample(64);
             let check = |expected: &[Answer]| check(structure, structure, &set, expected, &sample);

@@ -8,6 +8,7 @@ use raywood::{Geometry, Ray, Structure};
 use super::measure::spread_text;
 use super::{Entry, Findings, Judgement, Lab, LectureError, Verdict};
 use crate::figures::{Axis, BarChart, BarSeries, Cell, Chart, Table};
+use crate::flat::structure_of;
 use crate::frame_budget::{CYCLES_PER_RAY, RAYS_PER_SECOND};
 use crate::ray_sets::RayKind;
 use crate::timing::{Timing, seconds, take_turns};
@@ -42,7 +43,7 @@ fn measure(lab: &Lab<'_>) -> Result<Findings, LectureError> {
         return Ok(findings(lab, "none", &[], &[], &[]));
     };
     let prepared = subject.prepared()?;
-    let structure = prepared.scene.structure();
+    let structure = structure_of(&prepared.scene);
 
     // One core, each kind in turn.
     let kinds: Vec<_> =

@@ -18,7 +18,7 @@ mod shapes;
 mod tests;
 
 use raywood::BuildError;
-use raywood_render::CameraError;
+use raywood_render::{CameraError, PrepareError};
 
 use crate::figures::{Chart, Table};
 pub use lab::Lab;
@@ -142,6 +142,8 @@ pub enum LectureError {
     },
     /// A structure cannot be built.
     Build(BuildError),
+    /// A scene cannot be made ready for rays.
+    Prepare(PrepareError),
     /// Nothing can be seen through a scene's camera.
     Camera(CameraError),
 }
@@ -156,6 +158,7 @@ impl std::fmt::Display for LectureError {
                 )
             }
             Self::Build(error) => error.fmt(f),
+            Self::Prepare(error) => error.fmt(f),
             Self::Camera(error) => error.fmt(f),
         }
     }
@@ -166,6 +169,12 @@ impl std::error::Error for LectureError {}
 impl From<BuildError> for LectureError {
     fn from(error: BuildError) -> Self {
         Self::Build(error)
+    }
+}
+
+impl From<PrepareError> for LectureError {
+    fn from(error: PrepareError) -> Self {
+        Self::Prepare(error)
     }
 }
 

@@ -52,7 +52,11 @@ fn rays_are_what_their_names_say() {
 
     assert!((4000..=5000).contains(&primary.rays.len()), "{}", primary.rays.len());
     assert!(primary.rays.iter().all(|ray| ray.origin == view.camera.eye));
-    let hits = primary.rays.iter().filter(|ray| prepared.structure().occluded(ray)).count();
+    let hits = primary
+        .rays
+        .iter()
+        .filter(|ray| prepared.structure().expect("no instances").occluded(ray))
+        .count();
     assert_eq!((reflection.rays.len(), diffuse.rays.len()), (hits, hits));
     assert!(!shadow.rays.is_empty() && shadow.rays.len() <= hits);
     for ray in sets[1..].iter().flat_map(|set| &set.rays) {

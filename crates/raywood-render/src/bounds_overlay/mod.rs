@@ -46,7 +46,7 @@ pub fn bounds_overlay(
     progress: &Progress,
 ) -> Result<BoundsOverlay, RenderError> {
     options.validate()?;
-    let structure = scene.structure();
+    let structure = scene.structure().ok_or(RenderError::Instances)?;
     check_level(structure, level)?;
     let camera = CameraRays::new(camera, options.width, options.height)?;
     let depths = depth::depths(structure, &camera, options, progress)?;

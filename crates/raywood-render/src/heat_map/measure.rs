@@ -46,7 +46,7 @@ pub fn heat_map(
     options.validate()?;
     let &RenderOptions { width, height, samples, .. } = options;
     let camera = CameraRays::new(camera, width, height)?;
-    let structure = scene.structure();
+    let structure = scene.structure().ok_or(RenderError::Instances)?;
     let bytes = options.memory_bytes();
     let (values, rays) = fill_tiles((width, height), 0.0, bytes, progress, |tile, pixels| {
         for (row, y) in (tile.y..tile.y + tile.height).enumerate() {

@@ -75,7 +75,7 @@ impl Shown for Occlusion {
             }
             blocked.clear();
             blocked.resize(rays.len(), false);
-            frame.scene.structure().occluded_batch_serial(rays, blocked);
+            frame.scene.tracer().occluded_batch(rays, blocked);
             let is_open = |(blocked, ray): &(&bool, &Ray)| !**blocked && ray.t_max > 0.0;
             let rays_of = rays.chunks_exact(RAYS as usize);
             let answers = blocked.chunks_exact(RAYS as usize).zip(rays_of);

@@ -86,7 +86,7 @@ impl<S: Shown> TileRenderer for FirstHits<'_, S> {
 impl<S: Shown> FirstHits<'_, S> {
     fn fill(&self, tile: &Tile, pixels: &mut TilePixels, scratch: &mut Scratch) -> RayCounts {
         let Frame { scene, camera, options, progress, .. } = self.frame;
-        let level = scene.structure().simd_level().unwrap_or_else(SimdLevel::active);
+        let level = scene.simd_level().unwrap_or_else(SimdLevel::active);
         let mut counts = RayCounts::default();
         for square in tile.squares() {
             scratch.primary.reset(tile, square, options.samples);
@@ -94,7 +94,7 @@ impl<S: Shown> FirstHits<'_, S> {
                 let Scratch { primary, primary_hits: hits, .. } = &mut *scratch;
                 level.run(SendPrimary { camera, primary, index });
                 let eye = camera.eye();
-                scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+                scene.tracer().intersect_from(eye, &primary.directions, hits);
                 counts.primary += primary.len() as u64;
 
                 let (primary, hits) = (&scratch.primary, &scratch.primary_hits);
@@ -137,7 +137,7 @@ impl<S: Shown> FirstHits<'_, S> {
                 break;
             }
             hits.resize(wave.len(), None);
-            self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
+            self.frame.scene.tracer().intersect_batch(&wave.rays, hits);
             counts.refraction += wave.len() as u64;
             let wave = wave.traced(hits, 0..wave.len());
             let memory = Memory { surfaces, textures, colors, behind };

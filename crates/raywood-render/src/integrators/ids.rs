@@ -31,9 +31,11 @@ impl Shown for Ids {
         colors: &mut [Rgb],
     ) -> RayCounts {
         for (number, color) in colors.iter_mut().enumerate() {
-            let primitive = surfaces.primitive(number);
-            let hue = material_color(frame.scene.material_index(primitive) as u32);
-            let shade = 0.75 + 0.25 * unit(mix(primitive ^ 0x51ed_270b));
+            let element = surfaces.element(number);
+            let hue = material_color(frame.scene.material_index(element) as u32);
+            // Instances are counted on, so that their triangles differ, too.
+            let own = element.primitive ^ element.instance.wrapping_mul(0x9e37_79b9);
+            let shade = 0.75 + 0.25 * unit(mix(own ^ 0x51ed_270b));
             *color = shade * hue;
         }
         RayCounts::default()

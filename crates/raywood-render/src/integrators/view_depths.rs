@@ -23,7 +23,7 @@ impl ViewDepths {
             .map(|[x, y]| camera.direction(middle(x, options.width), middle(y, options.height)))
             .collect();
         let mut hits = HitColumns::default();
-        scene.structure().intersect_from(camera.eye(), &directions, &mut hits);
+        scene.tracer().intersect_from(camera.eye(), &directions, &mut hits);
 
         let mut distances: Vec<f32> = hits.t.iter().copied().filter(|t| t.is_finite()).collect();
         distances.sort_unstable_by(f32::total_cmp);

@@ -10,12 +10,12 @@ use raywood_scene::luminance;
 
 use super::{AliasTable, LightSample};
 use crate::PreparedScene;
-use crate::prepared::Which;
+use crate::prepared::{Element, Which};
 use crate::textured::emission_at;
 
 /// All surfaces of a scene that send out light.
 pub(crate) struct AreaLights {
-    primitives: Vec<u32>,
+    elements: Vec<Element>,
     table: AliasTable,
     /// Of each material the probability that a point is chosen, per unit of area; zero of what is dark.
     densities: Vec<f32>,
@@ -24,7 +24,7 @@ pub(crate) struct AreaLights {
 /// A point that lies on a light, as it is seen from another.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lit {
-    pub(crate) primitive: u32,
+    pub(crate) element: Element,
     /// How far away it is.
     pub(crate) distance: f32,
     /// The cosine between the way and the surface's normal, at least zero.
@@ -40,19 +40,19 @@ impl AreaLights {
         if powers.iter().all(|&power| power <= 0.0) {
             return None;
         }
-        let mut primitives = Vec::new();
+        let mut elements = Vec::new();
         let mut weights = Vec::new();
-        for primitive in 0..scene.primitive_count() {
-            let power = powers[scene.material_index(primitive)];
-            let weight = if power > 0.0 { power * area(scene, primitive) } else { 0.0 };
+        for element in scene.elements() {
+            let power = powers[scene.material_index(element)];
+            let weight = if power > 0.0 { power * area(scene, element) } else { 0.0 };
             if weight > 0.0 {
-                primitives.push(primitive);
+                elements.push(element);
                 weights.push(weight);
             }
         }
         let table = AliasTable::new(&weights)?;
         let densities = powers.iter().map(|power| (power / table.total()) as f32).collect();
-        Some(Self { primitives, table, densities })
+        Some(Self { elements, table, densities })
     }
 
     /// Chooses a point that light comes from to `point`; `None` where it chose one that sends none there. `choice` and `u` are random numbers.
@@ -63,12 +63,13 @@ impl AreaLights {
         choice: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
-        let primitive = self.primitives[self.table.choose(choice)];
-        let per_area = self.densities[scene.material_index(primitive)];
+        let element = self.elements[self.table.choose(choice)];
+        let per_area = self.densities[scene.material_index(element)];
+        let Element { primitive, instance } = element;
         match scene.which(primitive) {
             Which::Triangle(triangle) => {
                 let [u, v] = even_barycentrics(u);
-                let [p0, p1, p2] = scene.corners(triangle);
+                let [p0, p1, p2] = scene.corners(triangle, instance);
                 let target = (1.0 - u - v) * p0 + u * p1 + v * p2;
                 let normal = (p1 - p0).cross(p2 - p0).normalize_or_zero();
                 let way = target - point;
@@ -76,7 +77,7 @@ impl AreaLights {
                 let direction = way / distance;
                 let cosine = direction.dot(normal).abs();
                 let density = per_area * distance * distance / cosine;
-                let radiance = emission_at(scene, &Hit { t: 0.0, u, v, primitive, instance: 0 });
+                let radiance = emission_at(scene, &Hit { t: 0.0, u, v, primitive, instance });
                 let is_sound = cosine > 0.0 && density > 0.0 && density.is_finite();
                 is_sound.then_some(LightSample {
                     direction,
@@ -87,7 +88,7 @@ impl AreaLights {
             }
             Which::Sphere(sphere) => {
                 let (center, radius) = scene.scene().spheres.as_slice()[sphere as usize];
-                let radiance = scene.material_of(primitive).emission;
+                let radiance = scene.material_of(element).emission;
                 let way = center - point;
                 let distance = way.length();
                 let cone = Cone::around(distance, radius)?;
@@ -110,9 +111,9 @@ impl AreaLights {
 
     /// The density by solid angle with which [`sample`](Self::sample) chooses a point, as it is seen from another.
     pub(crate) fn density(&self, scene: &PreparedScene<'_>, lit: Lit) -> f32 {
-        let Lit { primitive, distance, cosine } = lit;
-        let per_area = self.densities[scene.material_index(primitive)];
-        match scene.which(primitive) {
+        let Lit { element, distance, cosine } = lit;
+        let per_area = self.densities[scene.material_index(element)];
+        match scene.which(element.primitive) {
             Which::Triangle(_) if cosine > 0.0 => per_area * distance * distance / cosine,
             Which::Triangle(_) => 0.0,
             Which::Sphere(sphere) => {
@@ -160,11 +161,11 @@ fn even_barycentrics([u, v]: [f32; 2]) -> [f32; 2] {
     if v > u { [0.5 * u, v - 0.5 * u] } else { [u - 0.5 * v, 0.5 * v] }
 }
 
-/// The area of a primitive.
-fn area(scene: &PreparedScene<'_>, primitive: u32) -> f64 {
-    match scene.which(primitive) {
+/// The area of an element.
+fn area(scene: &PreparedScene<'_>, element: Element) -> f64 {
+    match scene.which(element.primitive) {
         Which::Triangle(triangle) => {
-            let [p0, p1, p2] = scene.corners(triangle);
+            let [p0, p1, p2] = scene.corners(triangle, element.instance);
             0.5 * f64::from((p1 - p0).cross(p2 - p0).length())
         }
         Which::Sphere(sphere) => {

@@ -38,7 +38,7 @@ pub(super) fn camera(prepared: &PreparedScene<'_>, bounds: &Aabb, aspect: f32) -
 /// A camera that looks along the level direction `towards` and a little down, from as far back as the room reaches.
 fn stepped_back(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3, towards: Vec3) -> Camera {
     let diagonal = bounds.diagonal();
-    let behind = prepared.structure().intersect(&Ray::new(point, -towards));
+    let behind = prepared.tracer().intersect(&Ray::new(point, -towards));
     let room = behind.map_or(0.25 * diagonal, |hit| hit.t);
     let eye = point - 0.85 * room * towards;
     let up = prepared.axes().up;
@@ -59,7 +59,7 @@ fn score(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera, aspect: f
         for column in 0..columns {
             let ray = rays.ray(column as f32 + 0.5, row as f32 + 0.5);
             // The open sky counts as a distant wall would, no more.
-            let Some(hit) = prepared.structure().intersect(&ray) else {
+            let Some(hit) = prepared.tracer().intersect(&ray) else {
                 depth += 0.3;
                 continue;
             };
@@ -111,7 +111,7 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
     lights.push(ambient(0.3));
 
     // Where the roof is open the sun shines in, steeply and a little aslant.
-    if !prepared.structure().occluded(&Ray::new(bounds.center(), up)) {
+    if !prepared.tracer().occluded(&Ray::new(bounds.center(), up)) {
         lights.push(Light {
             name: "sun".into(),
             kind: LightKind::Directional {
@@ -127,7 +127,7 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
 /// it lights. `None` if all of them lie within something.
 fn below_ceiling(prepared: &PreparedScene<'_>, bounds: &Aabb, point: Vec3) -> Option<(Vec3, f32)> {
     let up = prepared.axes().up;
-    let ceiling = prepared.structure().intersect(&Ray::new(point, up));
+    let ceiling = prepared.tracer().intersect(&Ray::new(point, up));
     let to_top = 0.5 * Axes::reach(bounds, up) - (point - bounds.center()).dot(up);
     let height = ceiling.map_or(to_top, |hit| hit.t);
     [0.7, 0.5, 0.3]

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use raywood::{Aabb, Geometry, Vec3};
-use raywood_scene::{Camera, Framing, default_direction, frame_bounds};
+use raywood_scene::{Camera, Framing, Scene, default_direction, frame_bounds};
 
 use crate::PreparedScene;
 use crate::camera_rays::CameraRays;
@@ -43,11 +43,16 @@ fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing)
     let inside = |vertex: &&Vec3| {
         vertex.min(bounds.min) == bounds.min && vertex.max(bounds.max) == bounds.max
     };
-    let mut framing = prepared
-        .scene()
-        .mesh
-        .triangles
-        .positions()
+    let scene = prepared.scene();
+    // Where there are objects, the corners of triangles that stand in the world; else all vertices, of which nearly all are corners.
+    let triangles = &scene.mesh.triangles;
+    let own = scene.instances.own_triangles(triangles);
+    let corners: Vec<_> = match scene.instances.is_empty() {
+        true => Vec::new(),
+        false => (0..own).flat_map(|triangle| triangles.corners(triangle)).collect(),
+    };
+    let vertices = if scene.instances.is_empty() { triangles.positions() } else { &corners };
+    let mut framing = vertices
         .par_chunks(1 << 14)
         .map(|vertices| {
             let mut framing = empty.clone();
@@ -56,9 +61,9 @@ fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing)
         })
         .reduce(|| empty.clone(), |a, b| a.merge(&b));
 
-    let spheres = &prepared.scene().spheres;
-    for sphere in 0..spheres.len() as u32 {
-        let Aabb { min, max } = spheres.bounds(sphere);
+    let spheres = &scene.spheres;
+    let around_spheres = (0..spheres.len() as u32).map(|sphere| spheres.bounds(sphere));
+    for Aabb { min, max } in around_spheres.chain(instance_bounds(scene)) {
         for corner in 0..8 {
             let pick =
                 |bit: u32, min: f32, max: f32| if corner >> bit & 1 == 0 { min } else { max };
@@ -72,20 +77,29 @@ fn include_surfaces(prepared: &PreparedScene<'_>, bounds: &Aabb, empty: Framing)
     framing
 }
 
+/// The boxes around instances, but empty ones.
+fn instance_bounds(scene: &Scene) -> impl Iterator<Item = Aabb> {
+    let bounds = scene.instances.bounds(&scene.mesh.triangles);
+    bounds.into_iter().filter(|bounds| !bounds.is_empty())
+}
+
 /// The box around where nearly all primitives are, if it is much smaller than the whole: what stands on a wide floor, or
 /// before a backdrop.
 fn detail_bounds(prepared: &PreparedScene<'_>, bounds: &Aabb) -> Option<Aabb> {
     const MOST_SAMPLES: usize = 1 << 14;
     const FEWEST: usize = 500;
-    let surfaces = prepared.structure().geometry();
-    if surfaces.len() < FEWEST {
+    let scene = prepared.scene();
+    let centers: Vec<Vec3> = if scene.instances.is_empty() {
+        let surfaces = PreparedScene::surfaces(scene);
+        let step = surfaces.len().div_ceil(MOST_SAMPLES).max(1);
+        let primitives = (0..surfaces.len()).step_by(step);
+        primitives.map(|primitive| surfaces.bounds(primitive as u32).center()).collect()
+    } else {
+        instance_bounds(scene).map(|bounds| bounds.center()).collect()
+    };
+    if centers.len() < FEWEST {
         return None;
     }
-    let step = surfaces.len().div_ceil(MOST_SAMPLES);
-    let centers: Vec<Vec3> = (0..surfaces.len())
-        .step_by(step)
-        .map(|primitive| surfaces.bounds(primitive as u32).center())
-        .collect();
 
     // All but a hundredth at either end of each axis, and some margin.
     let range = |axis: usize| {
@@ -112,7 +126,7 @@ fn visible_share(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camera) -
             let ray = rays.ray(column as f32 + 0.5, row as f32 + 0.5);
             let Some(entry) = entry(bounds, ray.origin, ray.direction) else { continue };
             meet += 1;
-            visible += u32::from(!prepared.structure().occluded(&ray.with_interval(0.0, entry)));
+            visible += u32::from(!prepared.tracer().occluded(&ray.with_interval(0.0, entry)));
         }
     }
     visible as f32 / meet.max(1) as f32

@@ -27,12 +27,12 @@ impl Surroundings {
         let (mut hits, mut fronts, mut logarithms, mut open) = (0, 0, 0.0, Vec3::ZERO);
         for index in 0..RAYS {
             let ray = Ray::new(point, direction(index, RAYS));
-            match prepared.structure().intersect(&ray) {
+            match prepared.tracer().intersect(&ray) {
                 None => open += ray.direction,
                 Some(hit) => {
                     hits += 1;
                     logarithms += hit.t.max(f32::MIN_POSITIVE).ln();
-                    let normal = prepared.structure().surface_point(&ray, &hit).normal;
+                    let normal = prepared.tracer().surface_point(&ray, &hit).normal;
                     fronts += u32::from(normal.dot(ray.direction) < 0.0);
                 }
             }

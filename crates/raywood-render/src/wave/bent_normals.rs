@@ -29,7 +29,7 @@ pub(crate) fn bend_normals(
     gather_tangents(scene, surfaces, numbers, &mut given, &mut signs);
     let mut edges = [ZERO; 2];
     let mut steps = [[[0.0; WAVE]; 2]; 2];
-    let (mut normals, mut geometric, mut bent) = (ZERO, ZERO, ZERO);
+    let (mut normals, mut geometric, mut fronts, mut bent) = (ZERO, ZERO, ZERO, ZERO);
     for (place, (&number, shown)) in numbers.iter().zip(shown).enumerate() {
         let number = usize::from(number);
         let first = get(&surfaces.corners[0], number);
@@ -40,6 +40,7 @@ pub(crate) fn bend_normals(
         }
         set(&mut normals, place, get(&surfaces.normals, number));
         set(&mut geometric, place, get(&surfaces.geometric_normals, number));
+        set(&mut fronts, place, get(&surfaces.own_normals, number));
         let [x, y, z, _] = shown[Slot::Normal as usize];
         set(&mut bent, place, Vec3::new(x, y, z));
     }
@@ -54,7 +55,7 @@ pub(crate) fn bend_normals(
         // The tangent space belongs to the front; the back shows it from behind.
         let (e1, e2) = (get(&edges[0], place), get(&edges[1], place));
         let outwards = get(&geometric, place);
-        let side = if e1.cross(e2).dot(outwards) < 0.0 { -1.0 } else { 1.0 };
+        let side = if get(&fronts, place).dot(outwards) < 0.0 { -1.0 } else { 1.0 };
         let shaded = get(&normals, place);
         let normal = side * shaded;
 
@@ -116,8 +117,13 @@ fn gather_tangents(
         let (a, b, c) = (corner(0), corner(1), corner(2));
         let (u, v) = (surfaces.weights[0][number], surfaces.weights[1][number]);
         let along = |i: usize| (1.0 - u - v) * a[i] + u * b[i] + v * c[i];
-        let tangent = Vec3::new(along(0), along(1), along(2));
+        let mut tangent = Vec3::new(along(0), along(1), along(2));
+        let mut sign = a[3];
+        if let Some(placed) = scene.placed(surfaces.element(number).instance) {
+            tangent = placed.to_world.vector(tangent);
+            sign = if placed.mirrored { -sign } else { sign };
+        }
         set(given, place, tangent);
-        signs[place] = if tangent == Vec3::ZERO { 0.0 } else { a[3] };
+        signs[place] = if tangent == Vec3::ZERO { 0.0 } else { sign };
     }
 }

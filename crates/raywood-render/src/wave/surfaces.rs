@@ -1,13 +1,13 @@
 //! The surfaces that a wave hit, in columns, ready for shading: what all hits need is computed with vectors.
 
-use raywood::{SurfacePoint, Vec3};
+use raywood::{Ray, SurfacePoint, Vec3};
 use raywood_scene::{MetallicRoughness, Pattern, Rgb};
 
 use super::columns::{Column, Columns, ZERO, get, set};
 use super::textured_surfaces::vertex_color;
 use super::{Traced, WAVE};
 use crate::PreparedScene;
-use crate::prepared::Which;
+use crate::prepared::{Element, Which};
 use crate::shading::{Surface, bent_normal};
 use crate::surface_material::SurfaceMaterial;
 
@@ -18,6 +18,8 @@ pub(crate) struct Surfaces {
     rays: [u32; WAVE],
     /// The number of what it hit.
     primitives: [u32; WAVE],
+    /// The number of the instance.
+    instances: [u32; WAVE],
     /// The number of the material in its scene.
     pub(crate) materials: [u32; WAVE],
     /// Where along the ray, and where on the triangle.
@@ -30,7 +32,7 @@ pub(crate) struct Surfaces {
     corner_normals: [Columns; 3],
     pub(crate) positions: Columns,
     /// The surfaces' own normals.
-    own_normals: Columns,
+    pub(super) own_normals: Columns,
     clearances: Column,
     /// Where rays start that leave to the side that the wave came from.
     pub(crate) origins: Columns,
@@ -53,6 +55,7 @@ impl Default for Surfaces {
             count: 0,
             rays: [0; WAVE],
             primitives: [0; WAVE],
+            instances: [0; WAVE],
             materials: [0; WAVE],
             distances: [0.0; WAVE],
             weights: [[0.0; WAVE]; 2],
@@ -90,6 +93,12 @@ impl Surfaces {
     #[inline(always)]
     pub(crate) fn primitive(&self, number: usize) -> u32 {
         self.primitives[number]
+    }
+
+    /// What was hit.
+    #[inline(always)]
+    pub(crate) fn element(&self, number: usize) -> Element {
+        Element { primitive: self.primitives[number], instance: self.instances[number] }
     }
 
     /// How far along its ray a surface is.
@@ -149,6 +158,9 @@ impl Surfaces {
         }
         if !scene.scene().spheres.as_slice().is_empty() {
             self.find_on_spheres(scene, wave);
+        }
+        if scene.has_instances() {
+            self.find_on_instances(scene, wave);
         }
 
         // Turn the normals to the side that the rays came from, and move off to there.
@@ -223,10 +235,11 @@ impl Surfaces {
             };
             self.rays[count] = ray as u32;
             self.primitives[count] = hit.primitive;
+            self.instances[count] = hit.instance;
             self.distances[count] = hit.t;
             self.weights[0][count] = hit.u;
             self.weights[1][count] = hit.v;
-            self.materials[count] = scene.material_index(hit.primitive) as u32;
+            self.materials[count] = scene.material_index(&hit) as u32;
             set(&mut self.directions, count, wave.direction(ray));
             let corners = match scene.which(hit.primitive) {
                 Which::Triangle(triangle) => mesh.triangles.triangles()[triangle as usize],
@@ -246,6 +259,41 @@ impl Surfaces {
             count += 1;
         }
         self.count = count;
+        if scene.has_instances() {
+            self.place(scene);
+        }
+    }
+
+    /// Takes what was gathered of instances from their objects' spaces into the world.
+    fn place(&mut self, scene: &PreparedScene<'_>) {
+        let has_normals = !scene.scene().mesh.normals.is_empty();
+        for number in 0..self.count() {
+            let Some(placed) = scene.placed(self.instances[number]) else { continue };
+            for corner in 0..3 {
+                let position = get(&self.corners[corner], number);
+                set(&mut self.corners[corner], number, placed.to_world.point(position));
+                if has_normals {
+                    let normal = get(&self.corner_normals[corner], number);
+                    set(&mut self.corner_normals[corner], number, placed.normal(normal));
+                }
+            }
+        }
+    }
+
+    /// Finds the points on instances, to all digits: corners in the world are rounded, and face the other way where they are mirrored.
+    fn find_on_instances(&mut self, scene: &PreparedScene<'_>, wave: &impl Traced) {
+        for number in 0..self.count() {
+            if scene.placed(self.instances[number]).is_none() {
+                continue;
+            }
+            let ray = self.ray(number);
+            let Some(hit) = wave.hit(ray) else { continue };
+            let ray = Ray::new(wave.origin(ray), wave.direction(ray));
+            let point = scene.tracer().surface_point(&ray, &hit);
+            set(&mut self.positions, number, point.position);
+            set(&mut self.own_normals, number, point.normal);
+            self.clearances[number] = point.clearance;
+        }
     }
 
     #[inline(always)]
@@ -311,6 +359,14 @@ impl Surfaces {
                 let color = (1.0 - hit.u - hit.v) * color(a) + hit.u * color(b) + hit.v * color(c);
                 let diffuse = get(&self.diffuse, number) * color;
                 set(&mut self.diffuse, number, diffuse);
+            }
+        }
+        if scene.has_instances() {
+            for number in 0..self.count() {
+                if let Some(placed) = scene.placed(self.instances[number]) {
+                    let diffuse = get(&self.diffuse, number) * placed.tint;
+                    set(&mut self.diffuse, number, diffuse);
+                }
             }
         }
     }

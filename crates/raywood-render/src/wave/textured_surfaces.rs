@@ -108,14 +108,16 @@ impl Vectorized for TextureSurfaces<'_> {
 #[inline(always)]
 pub(super) fn vertex_color(scene: &PreparedScene<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
     let mesh = &scene.scene().mesh;
+    let tint =
+        scene.placed(surfaces.element(number).instance).map_or(Rgb::ONE, |placed| placed.tint);
     if mesh.colors.is_empty() {
-        return Rgb::ONE;
+        return tint;
     }
     let Which::Triangle(triangle) = scene.which(surfaces.primitive(number)) else {
-        return Rgb::ONE;
+        return tint;
     };
     let corners = mesh.triangles.triangles()[triangle as usize];
     let color = |i: usize| mesh.colors.get(corners[i] as usize).copied().unwrap_or(Rgb::ONE);
     let [u, v] = [surfaces.weights[0][number], surfaces.weights[1][number]];
-    (1.0 - u - v) * color(0) + u * color(1) + v * color(2)
+    tint * ((1.0 - u - v) * color(0) + u * color(1) + v * color(2))
 }

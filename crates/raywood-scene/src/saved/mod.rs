@@ -36,7 +36,7 @@ const SPHERE_MATERIALS: &str = "sphere-materials";
 ///
 /// # Errors
 ///
-/// What the writer says: see [`Bvh::save_with`].
+/// A scene with [instances](Scene::instances), which must be [flattened](Scene::flatten) first; what the writer says: see [`Bvh::save_with`].
 pub fn save_scene<G: SavedGeometry>(
     scene: &Scene,
     tree: &Bvh<G>,
@@ -63,7 +63,12 @@ pub fn save_scene<G: SavedGeometry>(
         up,
         background,
         warnings: _,
+        instances,
     } = scene;
+    if !instances.is_empty() {
+        let problem = "a scene with instances cannot be saved, only one whose instances are copied";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
     let small = Small {
         up: *up,
         background: *background,

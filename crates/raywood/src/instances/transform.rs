@@ -105,6 +105,27 @@ impl Transform {
         single(self.vector_in_double(double(vector.into())))
     }
 
+    /// What turns normals of surfaces into those of transformed surfaces, up to their length: the inverse transposed matrix, so that normals that point outside still do, of mirrored
+    /// surfaces too. Zero where the transform flattens space to a line.
+    pub fn for_normals(&self) -> Self {
+        let [a, b, c] = self.linear();
+        let sign = if self.mirrors() { -1.0 } else { 1.0 };
+        // Any length serves, so that of the largest coordinate is one and nothing overflows.
+        let rows = [cross(b, c), cross(c, a), cross(a, b)];
+        let size = rows.iter().map(|row| largest(absolute(*row))).fold(0.0, f64::max);
+        let factor = if size > 0.0 { sign / size } else { 0.0 };
+        Self::from_rows(rows.map(|row| {
+            let [x, y, z] = row.map(|number| (factor * number) as f32);
+            [x, y, z, 0.0]
+        }))
+    }
+
+    /// Whether it turns left hands into right hands, and so the order in which a triangle's corners are seen.
+    pub fn mirrors(&self) -> bool {
+        let [a, b, c] = self.linear();
+        dot(a, cross(b, c)) < 0.0
+    }
+
     pub(super) fn point_in_double(&self, p: Double3) -> Double3 {
         let [x, y, z] = self.vector_in_double(p);
         let [tx, ty, tz] = self.rows.map(|row| f64::from(row[3]));
@@ -127,6 +148,15 @@ impl Transform {
     #[inline(always)]
     fn entry(&self, row: usize, column: usize) -> f64 {
         f64::from(self.rows[row][column])
+    }
+
+    /// Whether it can place an instance.
+    ///
+    /// # Errors
+    ///
+    /// It is not finite, or there is no way back.
+    pub fn check(&self) -> Result<(), TransformError> {
+        self.inverse().map(|_| ())
     }
 
     /// The way back, if there is one.
@@ -173,8 +203,11 @@ impl Transform {
         largest([sum(a), sum(b), sum(c)])
     }
 
-    /// A box around a transformed one, which is not empty: rounded outwards, and larger by what rounding of rays that are taken the other way moves points inside.
-    pub(super) fn bounds(&self, bounds: &Aabb) -> Aabb {
+    /// A box around a transformed one: rounded outwards, and larger by what rounding of rays that are taken the other way moves points inside. Empty of an empty one.
+    pub fn bounds(&self, bounds: &Aabb) -> Aabb {
+        if bounds.is_empty() {
+            return Aabb::EMPTY;
+        }
         let (low, high) = (double(bounds.min), double(bounds.max));
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for (axis, row) in self.rows.iter().enumerate() {

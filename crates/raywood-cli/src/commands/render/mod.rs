@@ -159,6 +159,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
+    let other_structure = args.structure.is_some_and(|kind| kind != StructureKind::default());
+    let loaded = match args {
+        _ if other_structure => loaded.without_instances("another structure")?,
+        Args { heatmap: Some(_), .. } => loaded.without_instances("a heat map")?,
+        Args { show_bounds: Some(_), .. } => loaded.without_instances("a picture of bounds")?,
+        _ => loaded,
+    };
     let Loaded { mut scene, tree, time: load } = loaded;
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
@@ -187,7 +194,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output.write(|writer| drawn.write(writer))?;
     let write = started.elapsed();
 
-    let structure = prepared.structure().stats();
+    let structure = prepared.stats();
     let report = Report {
         args,
         scene: &scene,

@@ -46,7 +46,15 @@ impl Report<'_> {
             n => format!(", {} spheres", thousands(n as u64)),
         };
         let triangles = thousands(scene.mesh.triangles.triangles().len() as u64);
-        line("load", format!("{}   {triangles} triangles{spheres}", seconds(load)));
+        let shown = match scene.instances.placed().len() {
+            0 => String::new(),
+            instances => format!(
+                ", {} of them to be seen by {} instances",
+                thousands(scene.visible_triangles()),
+                thousands(instances as u64)
+            ),
+        };
+        line("load", format!("{}   {triangles} triangles{shown}{spheres}", seconds(load)));
         let megabytes = structure.bytes as f64 / 1e6;
         let (nodes, depth) = (thousands(structure.nodes as u64), structure.depth);
         let size = format!("{nodes} nodes, depth {depth}, {megabytes:.1} MB");
@@ -117,6 +125,8 @@ impl Report<'_> {
             "depth": args.depth,
             "threads": render.threads,
             "triangles": scene.mesh.triangles.triangles().len(),
+            "visible_triangles": scene.visible_triangles(),
+            "instances": scene.instances.placed().len(),
             "spheres": scene.spheres.as_slice().len(),
             "warnings": scene.warnings,
             "saved_tree": is_saved,

@@ -101,7 +101,7 @@ impl Scatterer<'_> {
 
         if material.emission != Rgb::ZERO {
             let cosine = -direction.dot(surface.geometric_normal);
-            let lit = Lit { primitive: surfaces.primitive(number), distance: since, cosine };
+            let lit = Lit { element: surfaces.element(number), distance: since, cosine };
             self.add_emission(&here, material.opacity * material.emission, lit);
         }
 

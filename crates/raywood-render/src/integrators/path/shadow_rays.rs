@@ -73,7 +73,7 @@ impl ShadowRays {
         let Self { rays, bringing, blocked, .. } = self;
         blocked.clear();
         blocked.resize(rays.len(), false);
-        scene.structure().occluded_batch_serial(rays, blocked);
+        scene.tracer().occluded_batch(rays, blocked);
         counts.shadow += rays.len() as u64;
         let bounds = scene.transmissive_bounds(picture.frame.options.opaque_shadows);
         for ((ray, bringing), blocked) in rays.iter().zip(&*bringing).zip(&*blocked) {
@@ -99,7 +99,7 @@ impl ShadowRays {
         let scene = picture.frame.scene;
         let opaque = picture.frame.options.opaque_shadows;
         hits.resize(rays.len(), None);
-        scene.structure().intersect_batch_serial(rays, hits);
+        scene.tracer().intersect_batch(rays, hits);
         counts.shadow += rays.len() as u64;
 
         let mut left = 0;
@@ -134,11 +134,11 @@ fn straight_passage(
     hit: &Hit,
     opaque: bool,
 ) -> Option<Passage> {
-    let material = scene.material_of(hit.primitive);
+    let material = scene.material_of(hit);
     let opacity = if material.perforated { opacity_at(scene, hit) } else { 1.0 };
     let whole = if opaque { Rgb::ZERO } else { straight_share(material) };
     let share = Rgb::splat(1.0 - opacity) + opacity * whole;
-    let point = scene.structure().surface_point(ray, hit);
+    let point = scene.tracer().surface_point(ray, hit);
     let passage = Passage { share, origin: point.origin_towards(ray.direction) };
     (share.max_element() > 0.0).then_some(passage)
 }

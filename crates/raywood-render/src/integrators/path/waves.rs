@@ -50,8 +50,8 @@ impl<'a> Waves<'a> {
         scratch.waiting.clear();
         scratch.shadows.clear();
         scratch.surfaces.keep_what_all_is_made_of();
-        let structure = picture.frame.scene.structure();
-        let level = structure.simd_level().unwrap_or_else(SimdLevel::active);
+        let tracer = picture.frame.scene.tracer();
+        let level = tracer.simd_level().unwrap_or_else(SimdLevel::active);
         Self { picture, tile, pixels, counts: RayCounts::default(), level, scratch }
     }
 
@@ -94,7 +94,7 @@ impl<'a> Waves<'a> {
         self.counts.primary += primary.len() as u64;
         self.level.run(SendPrimary { camera, primary, index: sample });
         let eye = camera.eye();
-        scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+        scene.tracer().intersect_from(eye, &primary.directions, hits);
 
         let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, shadows, .. } =
             &mut *self.scratch;
@@ -115,7 +115,7 @@ impl<'a> Waves<'a> {
         let Scratch { waiting, wave, hits, .. } = &mut *self.scratch;
         waiting.move_wave(wave);
         hits.resize(wave.len(), None);
-        self.picture.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
+        self.picture.frame.scene.tracer().intersect_batch(&wave.rays, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
             let Scratch { waiting, wave, hits, surfaces, textures, shadows, .. } =

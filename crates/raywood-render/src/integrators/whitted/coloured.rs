@@ -61,7 +61,7 @@ impl ColouredShadows {
     ) {
         let Self { rays, bringing, hits } = self;
         hits.resize(rays.len(), None);
-        frame.scene.structure().intersect_batch_serial(rays, hits);
+        frame.scene.tracer().intersect_batch(rays, hits);
         counts.shadow += rays.len() as u64;
 
         let Lights { directed, .. } = frame.lights;

@@ -164,13 +164,13 @@ fn ask_whether_blocked(
     match aim {
         Aim::Point(target) => {
             let end = Ray::SHORT_END;
-            let structure = scene.structure();
-            structure.occluded_from_surfaces_serial(target, end, origins, primitives, blocked);
+            let tracer = scene.tracer();
+            tracer.occluded_from_surfaces(target, end, origins, primitives, blocked);
         }
         Aim::Direction(_) => {
             parallel.clear();
             parallel.extend(origins.iter().map(|origin| aim.ray_from(*origin)));
-            scene.structure().occluded_batch_serial(parallel, blocked);
+            scene.tracer().occluded_batch(parallel, blocked);
         }
     }
 }

@@ -44,7 +44,7 @@ impl<'a> Waves<'a> {
     ) -> Self {
         scratch.waiting.reset(frame.options.max_depth);
         scratch.direct.reset(frame.lights.directed.len());
-        let level = frame.scene.structure().simd_level().unwrap_or_else(SimdLevel::active);
+        let level = frame.scene.tracer().simd_level().unwrap_or_else(SimdLevel::active);
         Self { frame, pixels, counts: RayCounts::default(), level, scratch }
     }
 
@@ -87,7 +87,7 @@ impl<'a> Waves<'a> {
         self.counts.primary += primary.len() as u64;
         self.level.run(SendPrimary { camera, primary, index });
         let eye = camera.eye();
-        scene.structure().intersect_from_serial(eye, &primary.directions, hits);
+        scene.tracer().intersect_from(eye, &primary.directions, hits);
 
         let shader = Shader {
             frame: self.frame,
@@ -111,7 +111,7 @@ impl<'a> Waves<'a> {
     fn trace_wave(&mut self, depth: u32) {
         let Scratch { wave, hits, .. } = &mut *self.scratch;
         hits.resize(wave.len(), None);
-        self.frame.scene.structure().intersect_batch_serial(&wave.rays, hits);
+        self.frame.scene.tracer().intersect_batch(&wave.rays, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
             let Scratch { waiting, wave, hits, surfaces, textures, direct, .. } =
