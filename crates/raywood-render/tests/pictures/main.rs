@@ -5,6 +5,7 @@ mod common;
 mod film;
 mod first_hits;
 mod heat_map;
+mod instances;
 mod optics;
 mod path;
 mod references;

@@ -3,6 +3,7 @@
 //! To add a scene, write a file with a `pub(super) const ENTRY` and name it in `BUILTINS`.
 
 mod error;
+mod forest;
 mod hall;
 pub mod modelling;
 mod sphereflake;
@@ -18,7 +19,8 @@ use error::closest;
 pub const DEFAULT_BUILTIN: &str = "hall";
 
 /// All built-in scenes, the default one first.
-const BUILTINS: &[Builtin] = &[hall::ENTRY, whitted::ENTRY, sphereflake::ENTRY, terrain::ENTRY];
+const BUILTINS: &[Builtin] =
+    &[hall::ENTRY, whitted::ENTRY, sphereflake::ENTRY, terrain::ENTRY, forest::ENTRY];
 
 /// A scene made by code.
 #[derive(Clone, Copy, Debug)]

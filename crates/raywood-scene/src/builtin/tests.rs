@@ -8,7 +8,8 @@ use modelling::{Part, is_closed, signed_volume};
 
 /// Every scene at a small size.
 fn small_scenes() -> Vec<Scene> {
-    let queries = ["hall?detail=1", "whitted", "sphereflake?depth=3", "terrain?n=64"];
+    let queries =
+        ["hall?detail=1", "whitted", "sphereflake?depth=3", "terrain?n=64", "forest?n=60"];
     assert_eq!(queries.len(), builtins().len(), "a scene is missing from this list");
     queries.map(|query| builtin(query).unwrap()).into()
 }
@@ -106,7 +107,7 @@ fn glass_is_closed_with_its_front_outside() {
 
 #[test]
 fn the_same_request_makes_the_same_scene_on_any_number_of_threads() {
-    for query in ["hall?detail=1", "terrain?n=100&seed=3", "sphereflake?depth=2"] {
+    for query in ["hall?detail=1", "terrain?n=100&seed=3", "sphereflake?depth=2", "forest?n=9"] {
         let make = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| builtin(query)).unwrap()
@@ -114,6 +115,7 @@ fn the_same_request_makes_the_same_scene_on_any_number_of_threads() {
         let (one, three) = (make(1), make(3));
         assert_eq!(one.mesh, three.mesh, "{query}");
         assert_eq!(one.spheres, three.spheres, "{query}");
+        assert_eq!(one.instances, three.instances, "{query}");
         assert_eq!((one.lights, one.cameras), (three.lights, three.cameras), "{query}");
     }
 }

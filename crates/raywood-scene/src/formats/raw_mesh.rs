@@ -24,6 +24,8 @@ pub(crate) struct RawMesh {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// A material per triangle; may be shorter where all the last ones have material 0.
     pub(crate) materials: Vec<MaterialId>,
+    /// Where the triangles of objects begin that are shown by instances.
+    pub(crate) object_starts: Vec<u32>,
 }
 
 /// A polygon that is too large for careful triangulation.
@@ -54,10 +56,7 @@ impl RawMesh {
     /// The checked mesh. Triangles that use a vertex which is NaN or infinite are dropped: the format has counted
     /// those vertices, or refused them.
     pub(crate) fn finish(mut self, input: &Input<'_>) -> Result<Mesh, LoadError> {
-        self.materials.resize(self.triangles.len(), 0);
-        if !self.positions.iter().all(|p| p.is_finite()) {
-            self.drop_unplaced_triangles();
-        }
+        self.drop_unplaced_triangles();
 
         // Normals of unit length, colours that can be light.
         for normal in &mut self.normals {
@@ -82,11 +81,18 @@ impl RawMesh {
         Ok(Mesh { triangles, normals, colors, texture_coordinates, tangents, materials })
     }
 
-    /// Drops the triangles with a vertex that is nowhere, and moves those vertices to the origin, where none uses them.
-    fn drop_unplaced_triangles(&mut self) {
+    /// Drops the triangles with a vertex that is nowhere, if there are any, and moves those vertices to the origin, where none uses them.
+    pub(crate) fn drop_unplaced_triangles(&mut self) {
+        self.materials.resize(self.triangles.len(), 0);
+        if self.positions.iter().all(|p| p.is_finite()) {
+            return;
+        }
         let positions = &self.positions;
         let placed = |t: &[u32; 3]| t.iter().all(|&i| positions[i as usize].is_finite());
         let kept: Vec<bool> = self.triangles.iter().map(placed).collect();
+        for start in &mut self.object_starts {
+            *start = kept[..*start as usize].iter().filter(|kept| **kept).count() as u32;
+        }
         let mut keep = kept.iter();
         self.triangles.retain(|_| keep.next() == Some(&true));
         let mut keep = kept.iter();

@@ -7,5 +7,6 @@ mod formats_hostile;
 mod formats_real;
 mod formats_support;
 mod formats_text;
+mod instances;
 mod saved;
 mod texture_files;

@@ -9,6 +9,7 @@ mod dynamic;
 mod forest;
 mod grids;
 mod hit_options;
+mod instance_batches;
 mod instances;
 mod kd_tree;
 mod moving_instances;

@@ -1,8 +1,7 @@
 //! Cameras of glTF.
 
-use raywood::TriangleMesh;
+use raywood::Vec3;
 
-use super::center_and_radius;
 use super::document::Document;
 use super::node::Instance;
 use crate::Camera;
@@ -13,7 +12,7 @@ use crate::formats::notes::Notes;
 pub(super) fn cameras(
     document: &Document<'_>,
     instances: &[Instance<'_>],
-    triangles: &TriangleMesh,
+    center_and_radius: &dyn Fn() -> (Vec3, f32),
     notes: &mut Notes,
 ) -> Result<Vec<Camera>, LoadError> {
     let mut measure = None;
@@ -42,7 +41,7 @@ pub(super) fn cameras(
         }
         let name = source.name.clone().or_else(|| node.name.clone()).unwrap_or_default();
         // The target is as far away as the middle of the scene, if that is in front.
-        let (center, radius) = *measure.get_or_insert_with(|| center_and_radius(triangles));
+        let (center, radius) = *measure.get_or_insert_with(center_and_radius);
         let ahead = (center - eye).dot(forward);
         let distance = if ahead > 0.01 * radius { ahead } else { radius };
         cameras.push(Camera { name, eye, target: eye + distance * forward, up, fov_y });

@@ -9,9 +9,8 @@ use std::f32::consts::PI;
 
 use gltf_json::extensions::scene::khr_lights_punctual::{Light as Source, Type};
 use gltf_json::validation::Checked;
-use raywood::{TriangleMesh, Vec3};
+use raywood::Vec3;
 
-use super::center_and_radius;
 use super::document::Document;
 use super::node::Instance;
 use crate::formats::notes::Notes;
@@ -24,7 +23,7 @@ const EXPOSURE: std::ops::RangeInclusive<f32> = 0.05..=5.0;
 pub(super) fn lights(
     document: &Document<'_>,
     instances: &[Instance<'_>],
-    triangles: &TriangleMesh,
+    center_and_radius: &dyn Fn() -> (Vec3, f32),
     notes: &mut Notes,
 ) -> Vec<Light> {
     let sources: &[Source] = document.root.as_ref();
@@ -56,14 +55,13 @@ pub(super) fn lights(
         lights.push(Light { name, kind, intensity: (strength / PI) * color });
     }
     if !lights.is_empty() {
-        expose(&mut lights, triangles, notes);
+        expose(&mut lights, center_and_radius(), notes);
     }
     lights
 }
 
 /// Scales all lights if the middle of the scene would be white or black all over.
-fn expose(lights: &mut [Light], triangles: &TriangleMesh, notes: &mut Notes) {
-    let (center, radius) = center_and_radius(triangles);
+fn expose(lights: &mut [Light], (center, radius): (Vec3, f32), notes: &mut Notes) {
     let reaching = |light: &Light| {
         let falloff = match light.kind {
             LightKind::Point { position } | LightKind::Spot { position, .. } => {

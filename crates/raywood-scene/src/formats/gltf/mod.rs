@@ -1,7 +1,7 @@
 //! glTF 2.0 (Khronos 2017), as JSON with buffers beside it (`.gltf`) or all in one (`.glb`).
 //!
 //! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it, or for each of its instances
-//! (`EXT_mesh_gpu_instancing`). Read:
+//! (`EXT_mesh_gpu_instancing`); large ones that are shown often become [objects](crate::Instances) instead (see `sharing.rs`). Read:
 //! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `TANGENT`, `TEXCOORD_0`, `TEXCOORD_1`, `COLOR_0`; sparse and normalised
 //! accessors; metallic and rough materials as far as Whitted's method can show them, with all their textures (PNG and JPEG); perspective
 //! cameras; punctual lights. Left out with a warning: images in other formats, points and lines, skins (shown as stored), morph targets
@@ -10,15 +10,16 @@
 //! The crate `gltf-json` reads the JSON and checks what it can. What it does not check (that buffers are as long as promised, that
 //! views and accessors lie within them, that nodes form trees) is checked here, before anything is read or allocated.
 
-use raywood::{TriangleMesh, Vec3};
+use raywood::{Aabb, Vec3};
 
 use self::document::Document;
 use self::primitive::Reads;
+use self::sharing::Shared;
 use super::notes::Notes;
 use super::raw_mesh::RawMesh;
 use super::{Format, Input};
 use crate::error::{LoadError, Place};
-use crate::{Material, MaterialId, Scene};
+use crate::{Instances, Material, MaterialId, Scene};
 
 mod accessor;
 mod camera;
@@ -29,6 +30,7 @@ mod light;
 mod material;
 mod node;
 mod primitive;
+mod sharing;
 mod texture;
 mod transform;
 
@@ -60,9 +62,10 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     materials.push(Material::default());
     let reads: Vec<Reads> = materials.iter().map(Reads::of).collect();
 
-    // Triangles in world space. All sizes are known beforehand.
+    // Triangles in world space, then those of objects in their own. All sizes are known beforehand.
     let mut mesh = RawMesh::default();
-    let size = primitive::total_size(&document, &instances, &reads)?;
+    let Shared { copied, objects, placed } = sharing::share(&document, instances, &reads)?;
+    let size = primitive::total_size(&document, copied.iter().chain(&objects), &reads)?;
     if size.vertices.max(size.triangles) > MOST {
         let (triangles, vertices) = (size.triangles, size.vertices);
         let message = format!(
@@ -73,29 +76,39 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     mesh.positions.reserve_exact(size.vertices as usize);
     mesh.triangles.reserve_exact(size.triangles as usize);
     mesh.materials.reserve_exact(size.triangles as usize);
-    for instance in &instances {
+    for instance in &copied {
         primitive::add(&document, instance, &reads, &mut mesh, &mut notes)?;
+    }
+    for object in &objects {
+        mesh.object_starts.push(mesh.triangles.len() as u32);
+        primitive::add(&document, object, &reads, &mut mesh, &mut notes)?;
     }
     if !mesh.materials.contains(&(materials.len() as MaterialId - 1)) {
         materials.pop();
     }
+    mesh.drop_unplaced_triangles();
+    let (starts, end) = (std::mem::take(&mut mesh.object_starts), mesh.triangles.len() as u32);
+    let instances = Instances::new(starts, end, placed)
+        .map_err(|error| LoadError::new(input.path, Place::File, error.to_string()))?;
     let mesh = mesh.finish(input)?;
     let images = textures.load(&document, &mut notes)?;
 
-    let cameras = camera::cameras(&document, &instances, &mesh.triangles, &mut notes)?;
-    let lights = light::lights(&document, &instances, &mesh.triangles, &mut notes);
+    let mut scene = Scene { mesh, instances, materials, images, ..Scene::default() };
+    let measure = || center_and_radius(&scene.bounds());
+    let cameras = camera::cameras(&document, &copied, &measure, &mut notes)?;
+    let lights = light::lights(&document, &copied, &measure, &mut notes);
     if !root.animations.is_empty() {
         notes.say("animations are not played: shown as stored");
     }
-    let warnings = notes.into_warnings();
-    let up = Some(Vec3::Y);
-    Ok(Scene { mesh, materials, images, lights, cameras, up, warnings, ..Scene::default() })
+    (scene.cameras, scene.lights) = (cameras, lights);
+    scene.warnings = notes.into_warnings();
+    scene.up = Some(Vec3::Y);
+    Ok(scene)
 }
 
-/// The middle and half the diagonal of all triangles, from which cameras and lights take their measure; some place and size
+/// The middle and half the diagonal of what holds all triangles, from which cameras and lights take their measure; some place and size
 /// if there are none.
-fn center_and_radius(triangles: &TriangleMesh) -> (Vec3, f32) {
-    let bounds = triangles.total_bounds();
+fn center_and_radius(bounds: &Aabb) -> (Vec3, f32) {
     let center = bounds.min * 0.5 + bounds.max * 0.5;
     let radius = (bounds.max - bounds.min).length() * 0.5;
     if center.is_finite() && radius.is_finite() && radius > 0.0 {

@@ -8,6 +8,7 @@ use super::transform::Transform;
 use crate::error::LoadError;
 
 /// A node in its place in the world.
+#[derive(Clone)]
 pub(super) struct Instance<'a> {
     /// Its number in the file.
     pub(super) index: usize,

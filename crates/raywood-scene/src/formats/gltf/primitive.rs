@@ -101,14 +101,14 @@ fn material_of(primitive: &Primitive, reads: &[Reads]) -> usize {
 }
 
 /// The size of all that is shown.
-pub(super) fn total_size(
+pub(super) fn total_size<'a>(
     document: &Document<'_>,
-    instances: &[Instance<'_>],
+    instances: impl Iterator<Item = &'a Instance<'a>>,
     reads: &[Reads],
 ) -> Result<Size, LoadError> {
     let mut total = Size::default();
     let mut known: Vec<Option<Size>> = vec![None; document.root.meshes.len()];
-    for mesh in instances.iter().filter_map(Instance::mesh) {
+    for mesh in instances.filter_map(Instance::mesh) {
         let Some(known) = known.get_mut(mesh) else { continue };
         let size = match *known {
             Some(size) => size,
@@ -120,7 +120,11 @@ pub(super) fn total_size(
 }
 
 /// The size of a mesh, from what its accessors promise and their buffers can hold. Arrays that primitives share count once.
-fn size(document: &Document<'_>, mesh: usize, reads: &[Reads]) -> Result<Size, LoadError> {
+pub(super) fn size(
+    document: &Document<'_>,
+    mesh: usize,
+    reads: &[Reads],
+) -> Result<Size, LoadError> {
     let mut size = Size::default();
     let mut seen = HashMap::new();
     for primitive in document.root.meshes.get(mesh).iter().flat_map(|mesh| &mesh.primitives) {

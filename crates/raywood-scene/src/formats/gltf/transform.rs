@@ -43,6 +43,14 @@ impl Transform {
         Self { axes, origin }
     }
 
+    /// In single precision.
+    pub(super) fn rounded(&self) -> raywood::Transform {
+        let [a, b, c] = self.axes;
+        raywood::Transform::from_rows(
+            [0, 1, 2].map(|i| [a[i], b[i], c[i], self.origin[i]].map(|number| number as f32)),
+        )
+    }
+
     /// First `inner`, then this.
     pub(super) fn after(&self, inner: &Self) -> Self {
         let origin = self.linear(inner.origin);
