@@ -60,7 +60,7 @@ impl Bark {
             Self::Birch => {
                 // Bands around the stem, torn at their ends; twigs are brown.
                 let torn = fractal3(Vec3::new(3.0 * point.x, 1.2 * point.y, 3.0 * point.z), 2, 9);
-                let bands = fractal3(Vec3::new(1.3 * point.x, 14.0 * point.y, 1.3 * point.z), 3, 3);
+                let bands = fractal3(Vec3::new(1.3 * point.x, 3.2 * point.y, 1.3 * point.z), 3, 3);
                 let rough = ((0.9 - point.y) * 0.9).clamp(0.0, 0.8);
                 let dark = ((bands + 0.3 * torn - 0.16) * 7.0).clamp(0.0, 1.0).max(rough);
                 let white = Rgb::new(0.66, 0.63, 0.57) * (1.0 + 0.2 * torn);
@@ -80,13 +80,17 @@ pub(super) const BEECH: Kind = Kind {
     spread: 0.40,
     branches: [26, 9, 6],
     angles: [62.0, 48.0, 45.0],
-    rise: [0.02, 0.035, 0.01, -0.03],
-    wobble: [0.035, 0.10, 0.16, 0.2],
+    rise: [0.005, 0.035, 0.01, -0.03],
+    wobble: [0.018, 0.10, 0.16, 0.2],
     leaves: 13,
     leaf: [0.24, 0.15],
-    green: [Rgb::new(0.055, 0.135, 0.018), Rgb::new(0.135, 0.235, 0.035)],
+    green: [Rgb::new(0.085, 0.190, 0.028), Rgb::new(0.20, 0.33, 0.055)],
     bark: Bark::Beech,
 };
+
+/// The same in autumn.
+pub(super) const RUSTY_BEECH: Kind =
+    Kind { green: [Rgb::new(0.34, 0.12, 0.030), Rgb::new(0.50, 0.27, 0.055)], ..BEECH };
 
 /// A slender tree that stands in the light.
 pub(super) const BIRCH: Kind = Kind {
@@ -96,13 +100,17 @@ pub(super) const BIRCH: Kind = Kind {
     spread: 0.27,
     branches: [30, 7, 5],
     angles: [46.0, 42.0, 38.0],
-    rise: [0.015, 0.0, -0.10, -0.22],
-    wobble: [0.05, 0.09, 0.12, 0.12],
+    rise: [0.004, 0.0, -0.10, -0.22],
+    wobble: [0.024, 0.09, 0.12, 0.12],
     leaves: 11,
     leaf: [0.15, 0.11],
-    green: [Rgb::new(0.13, 0.20, 0.025), Rgb::new(0.24, 0.29, 0.045)],
+    green: [Rgb::new(0.17, 0.26, 0.035), Rgb::new(0.31, 0.37, 0.060)],
     bark: Bark::Birch,
 };
+
+/// The same in autumn.
+pub(super) const GOLDEN_BIRCH: Kind =
+    Kind { green: [Rgb::new(0.52, 0.33, 0.035), Rgb::new(0.72, 0.52, 0.075)], ..BIRCH };
 
 impl Kind {
     /// A tree of this kind, its foot at the origin.
@@ -151,7 +159,7 @@ impl Growth<'_> {
     /// Adds a stem and all that grows on it.
     fn add(&mut self, stem: &Stem) {
         let (kind, order) = (self.kind, stem.order);
-        let (pieces, sides) = ([16, 7, 4, 2][order], [12, 6, 4, 3][order]);
+        let (pieces, sides) = ([64, 7, 4, 2][order], [14, 6, 4, 3][order]);
         let step = stem.length / pieces as f32;
 
         // Let it grow piece by piece, crooked and towards the light.

@@ -101,7 +101,7 @@ fn add_needles(
     let flat = direction.cross(Vec3::Y).normalize_or_zero();
     let tufts = (length / 0.13) as usize + 1;
     let mix = rng.unit();
-    let old = (1.0 - mix) * Rgb::new(0.020, 0.058, 0.022) + mix * Rgb::new(0.040, 0.090, 0.026);
+    let old = (1.0 - mix) * Rgb::new(0.034, 0.088, 0.036) + mix * Rgb::new(0.062, 0.130, 0.042);
     for tuft in 0..tufts {
         let t = tuft as f32 / tufts as f32;
         let from = base + (length * t) * direction;

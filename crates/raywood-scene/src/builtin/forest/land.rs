@@ -58,7 +58,7 @@ impl Land {
         let behind = 0.30 + 0.70 * smooth_step(20.0, -130.0, z);
         let rise = smooth_step(0.35, 10.0, beyond);
         let ridges = 1.0 + 0.75 * self.noise(x, z, 150.0, 3, 3);
-        bank + 0.9 * bumps + 88.0 * behind * rise * ridges
+        bank + 0.9 * bumps + 64.0 * behind * rise * ridges
     }
 
     /// What the ground looks like: sand at the shore, grass in the open, leaves and moss under trees.
@@ -68,7 +68,7 @@ impl Land {
         let coarse = self.noise(x, z, 9.0, 3, 5);
         let soil = Rgb::new(0.115, 0.080, 0.045) * (1.0 + 0.7 * fine);
         let moss = Rgb::new(0.070, 0.100, 0.025) * (1.0 + 0.6 * fine);
-        let meadow = Rgb::new(0.085, 0.120, 0.030) * (1.0 + 0.5 * fine);
+        let meadow = Rgb::new(0.12, 0.17, 0.045) * (1.0 + 0.5 * fine);
         let sand = Rgb::new(0.26, 0.21, 0.14) * (1.0 + 0.35 * fine);
         let mix = |a: Rgb, b: Rgb, share: f32| (1.0 - share) * a + share * b;
         let floor = mix(soil, moss, (0.45 + 1.1 * coarse).clamp(0.0, 1.0));

@@ -17,7 +17,7 @@ pub(super) fn materials() -> Vec<Material> {
         Material {
             name: "water".into(),
             diffuse: Rgb::new(0.010, 0.020, 0.016),
-            mirror: Rgb::splat(0.05),
+            mirror: Rgb::splat(0.10),
             specular: Rgb::splat(0.5),
             shininess: 900.0,
             ..Material::default()

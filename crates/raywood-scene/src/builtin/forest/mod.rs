@@ -15,7 +15,7 @@ use raywood::{Transform, TriangleMesh, Vec3};
 
 use super::{Builtin, Parameter, Values};
 use crate::{Background, Camera, Instance, Instances, Light, LightKind, Mesh, Rgb, Scene};
-use broadleaf::{BEECH, BIRCH};
+use broadleaf::{BEECH, BIRCH, GOLDEN_BIRCH, RUSTY_BEECH};
 use land::{CLEARING, Land, smooth_step};
 use plant::Plant;
 use random::Rng;
@@ -27,7 +27,7 @@ pub(super) const ENTRY: Builtin = Builtin {
     parameters: &[
         Parameter {
             name: "n",
-            description: "trees at most, those nearest to the lake: the default ones show some 300 million triangles",
+            description: "trees at most, those nearest to the lake: the default ones show some 500 million triangles",
             default: 8000,
             min: 0,
             max: 40_000,
@@ -47,7 +47,9 @@ pub(super) const ENTRY: Builtin = Builtin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sort {
     Beech,
+    RustyBeech,
     Birch,
+    GoldenBirch,
     Spruce,
     Fern,
     Grass,
@@ -60,7 +62,9 @@ enum Sort {
 /// Of each sort how many differ.
 const SORTS: &[(Sort, usize)] = &[
     (Sort::Beech, 3),
+    (Sort::RustyBeech, 1),
     (Sort::Birch, 3),
+    (Sort::GoldenBirch, 2),
     (Sort::Spruce, 3),
     (Sort::Fern, 3),
     (Sort::Grass, 4),
@@ -74,7 +78,9 @@ impl Sort {
     fn make(self, seed: u64) -> Plant {
         match self {
             Self::Beech => BEECH.grow(seed),
+            Self::RustyBeech => RUSTY_BEECH.grow(seed + 7),
             Self::Birch => BIRCH.grow(seed),
+            Self::GoldenBirch => GOLDEN_BIRCH.grow(seed + 7),
             Self::Spruce => conifer::spruce(seed, 0.85 + 0.1 * (seed % 3) as f32),
             Self::Fern => undergrowth::fern(seed),
             Self::Grass => undergrowth::grass(seed, 0),
@@ -113,7 +119,12 @@ fn build(values: &Values) -> Scene {
         all.append(object);
     }
 
-    let mut placed = Planting { land: &land, rng: Rng::new(seed ^ 0x5eed), placed: Vec::new() };
+    let mut placed = Planting {
+        land: &land,
+        jetty: jetty_foot(&land),
+        rng: Rng::new(seed ^ 0x5eed),
+        placed: Vec::new(),
+    };
     placed.trees(trees);
     placed.undergrowth(if trees == 0 { 0.0 } else { 1.0 });
     let end = all.triangles.len() as u32;
@@ -129,8 +140,8 @@ fn build(values: &Values) -> Scene {
         lights: lights(),
         cameras: vec![camera(&land)],
         background: Background {
-            zenith: Rgb::new(0.09, 0.25, 0.58),
-            horizon: Rgb::new(0.93, 0.84, 0.70),
+            zenith: Rgb::new(0.11, 0.33, 0.80),
+            horizon: Rgb::new(1.0, 0.92, 0.78),
             nadir: Rgb::new(0.10, 0.12, 0.08),
         },
         ..Scene::default()
@@ -141,40 +152,52 @@ fn camera(land: &Land) -> Camera {
     let (x, z) = (-4.5, 36.0);
     Camera {
         name: "camera".into(),
-        eye: Vec3::new(x, land.height(x, z) + 2.1, z),
-        target: Vec3::new(1.0, 4.6, -12.0),
+        eye: Vec3::new(x, land.height(x, z) + 2.5, z),
+        target: Vec3::new(0.5, 5.6, -12.0),
         up: Vec3::Y,
-        fov_y: 42.0,
+        fov_y: 44.0,
     }
 }
 
 fn lights() -> Vec<Light> {
     let light = |name: &str, kind, intensity| Light { name: name.into(), kind, intensity };
-    let sun = Vec3::new(0.80, -0.46, -0.40).normalize_or_zero();
+    let sun = Vec3::new(0.66, -0.60, -0.46).normalize_or_zero();
     vec![
-        light("sky", LightKind::Ambient, Rgb::new(0.20, 0.25, 0.33)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(3.1, 2.45, 1.55)),
+        light("sky", LightKind::Ambient, Rgb::new(0.29, 0.35, 0.45)),
+        light("sun", LightKind::Directional { direction: sun }, Rgb::new(3.6, 2.95, 1.95)),
     ]
 }
 
-/// The jetty at the shore before the eye.
-fn placed_jetty(land: &Land, seed: u64) -> Plant {
-    let x = 3.2;
-    // Down to the water from the clearing.
+/// By how much the jetty is turned to the left of the lake's axis, in degrees.
+const JETTY_TURN: f32 = 13.0;
+
+/// Where the jetty begins: where the clearing comes down to the water.
+fn jetty_foot(land: &Land) -> [f32; 2] {
+    let x = 2.2;
     let mut z = CLEARING[1];
     while land.height(x, z) > 0.35 && z > 0.0 {
         z -= 0.1;
     }
+    [x, z + 1.2]
+}
+
+/// The jetty at the shore before the eye.
+fn placed_jetty(land: &Land, seed: u64) -> Plant {
     let mut jetty = jetty::jetty(seed);
-    for position in &mut jetty.positions {
-        *position += Vec3::new(x, 0.0, z + 1.2);
-    }
+    // A little to the left.
+    let turn = Transform::rotation(Vec3::Y, JETTY_TURN);
+    let [x, z] = jetty_foot(land);
+    let to_world = turn.then(&Transform::translation([x, 0.0, z]));
+    jetty.positions.iter_mut().for_each(|position| *position = to_world.point(*position));
+    jetty.normals.iter_mut().for_each(|normal| *normal = turn.vector(*normal).normalize_or_zero());
     jetty
 }
 
 /// Puts plants in their places.
 struct Planting<'a> {
     land: &'a Land,
+    /// Where the jetty begins.
+    jetty: [f32; 2],
     rng: Rng,
     placed: Vec<Instance>,
 }
@@ -198,6 +221,14 @@ impl Planting<'_> {
         self.placed.push(Instance { tint, ..Instance::new(object, transform) });
     }
 
+    /// Whether a place lies under the jetty or beside it.
+    fn is_at_jetty(&self, x: f32, z: f32) -> bool {
+        let (sin, cos) = JETTY_TURN.to_radians().sin_cos();
+        let [dx, dz] = [x - self.jetty[0], z - self.jetty[1]];
+        let (across, along) = (cos * dx - sin * dz, -sin * dx - cos * dz);
+        across.abs() < 1.5 && (-1.0..11.0).contains(&along)
+    }
+
     /// Plants trees: birches in the light, beeches in the valley, spruces on the heights.
     fn trees(&mut self, most: usize) {
         let land = self.land;
@@ -217,7 +248,12 @@ impl Planting<'_> {
         // As far as the ground is seen from the lake.
         let reach = (5.2 * (most as f32 + 60.0).sqrt()).clamp(90.0, 560.0);
         let spots = spots([0.0, -60.0 * (reach / 560.0)], reach, 6.2, &mut self.rng, room);
-        for spot in spots.into_iter().take(most) {
+        // Two that frame the view.
+        if most > 2 {
+            self.put(Sort::Birch, [-9.4, 23.6], 0.92, Rgb::splat(1.05));
+            self.put(Sort::GoldenBirch, [-11.6, 22.2], 0.75, Rgb::ONE);
+        }
+        for spot in spots.into_iter().take(most.saturating_sub(2)) {
             let (x, z) = (spot.x, spot.z);
             let height = land.height(x, z);
             let shore = land.shore(x, z);
@@ -233,25 +269,29 @@ impl Planting<'_> {
                 Sort::Beech
             };
             let size = self.rng.between(0.68, 1.18) * (0.7 + 0.06 * spot.room);
-            let tint = self.tree_tint(sort, x, z);
+            let tint = self.tree_tint(x, z);
+            let sort = self.in_autumn(sort, x, z);
             self.put(sort, [x, z], size, tint);
         }
     }
 
-    /// No two trees are of the same green; some turn yellow early, and what is far away is bluish.
-    fn tree_tint(&mut self, sort: Sort, x: f32, z: f32) -> Rgb {
+    /// Some trees turn early, here more of them and there fewer.
+    fn in_autumn(&mut self, sort: Sort, x: f32, z: f32) -> Sort {
+        let turned = self.rng.unit() + 0.45 * self.land.noise(x, z, 45.0, 2, 22);
+        match sort {
+            Sort::Birch if turned > 0.62 => Sort::GoldenBirch,
+            Sort::Beech if turned > 0.88 => Sort::RustyBeech,
+            other => other,
+        }
+    }
+
+    /// No two trees are of the same colour, and what is far away is bluish.
+    fn tree_tint(&mut self, x: f32, z: f32) -> Rgb {
         let rng = &mut self.rng;
-        let shade = rng.between(0.78, 1.22);
-        let autumn = smooth_step(0.62, 1.0, rng.unit() + 0.35 * self.land.noise(x, z, 55.0, 2, 22));
-        let turned = match sort {
-            Sort::Birch => Rgb::new(1.9, 1.18, 0.75),
-            Sort::Beech => Rgb::new(1.75, 0.98, 0.72),
-            _ => Rgb::new(1.1, 1.0, 0.9),
-        };
-        let warm = (1.0 - autumn) * Rgb::ONE + autumn * turned;
-        let away = smooth_step(60.0, 520.0, (x * x + (z - 36.0) * (z - 36.0)).sqrt());
-        let haze = Rgb::new(1.0 + 0.15 * away, 1.0 + 0.25 * away, 1.0 + 2.2 * away);
-        shade * (warm * haze)
+        let warm = rng.between(-0.10, 0.10);
+        let shade = rng.between(0.8, 1.2) * Rgb::new(1.0 + warm, 1.0, 1.0 - warm);
+        let away = smooth_step(60.0, 480.0, (x * x + (z - 36.0) * (z - 36.0)).sqrt());
+        shade * Rgb::new(1.0 + 0.25 * away, 1.0 + 0.35 * away, 1.0 + 2.6 * away)
     }
 
     /// Plants what is small, where it can be seen: around the clearing and along the shore.
@@ -270,6 +310,9 @@ impl Planting<'_> {
         });
         for spot in near.into_iter().chain(far) {
             let (x, z) = (spot.x, spot.z);
+            if self.is_at_jetty(x, z) {
+                continue;
+            }
             let light = land.clearing(x, z).max(smooth_step(1.5, 1.15, land.shore(x, z)));
             let patch = land.noise(x, z, 6.0, 2, 23);
             let choice = self.rng.unit();
@@ -302,6 +345,9 @@ impl Planting<'_> {
             let (x, z) = (spot.x, spot.z);
             let shore = land.shore(x, z);
             let bed = land.noise(x, z, 13.0, 2, 25);
+            if self.is_at_jetty(x, z) {
+                continue;
+            }
             let before_eye = z > 8.0 && (-13.0..7.0).contains(&x);
             if shore > 0.93 && bed > 0.05 && !before_eye {
                 self.put(Sort::Reeds, [x, z], self.rng.clone().between(0.8, 1.2), Rgb::ONE);

@@ -31,7 +31,7 @@ pub(super) fn fern(seed: u64) -> Plant {
             let ahead = (at(t + 0.03) - at(t - 0.03)).normalize_or_zero();
             let side = ahead.cross(Vec3::Y).normalize_or_zero();
             let reach = 0.26 * length * (1.0 - t).powf(0.6) * (0.4 + 0.6 * (t * 5.0).min(1.0));
-            let color = rng.between(0.75, 1.2) * Rgb::new(0.085, 0.18, 0.03);
+            let color = rng.between(0.75, 1.2) * Rgb::new(0.13, 0.26, 0.045);
             for hand in [-1.0f32, 1.0] {
                 let along = (hand * side + 0.45 * ahead - 0.12 * Vec3::Y).normalize_or_zero();
                 let across = along.cross(ahead.cross(side)).normalize_or_zero();
@@ -54,15 +54,15 @@ pub(super) fn grass(seed: u64, flowers: usize) -> Plant {
     for _ in 0..150 {
         let (foot, turn) = (place(&mut rng), rng.angle());
         let lean = rng.between(0.15, 0.75) * Vec3::new(turn.cos(), 0.0, turn.sin());
-        let size = (rng.between(0.16, 0.44), rng.between(0.008, 0.014));
+        let size = (rng.between(0.10, 0.30), rng.between(0.008, 0.014));
         let dry = rng.unit() * rng.unit();
         let tint = |green: Rgb| (1.0 - dry) * green + dry * Rgb::new(0.27, 0.22, 0.09);
-        let colors = [tint(Rgb::new(0.05, 0.09, 0.018)), tint(Rgb::new(0.14, 0.22, 0.045))];
+        let colors = [tint(Rgb::new(0.08, 0.14, 0.025)), tint(Rgb::new(0.23, 0.34, 0.07))];
         plant.blade(foot, lean, size, colors, LEAVES);
     }
     for _ in 0..flowers {
         let foot = place(&mut rng);
-        let head = foot + rng.between(0.25, 0.42) * Vec3::Y + 0.05 * rng.vector();
+        let head = foot + rng.between(0.2, 0.34) * Vec3::Y + 0.05 * rng.vector();
         let joints = [foot, head].map(|position| Joint { position, radius: 0.0035 });
         plant.stem(&joints, 3, LEAVES, |_| Rgb::new(0.07, 0.13, 0.03));
         for petal in 0..8 {
