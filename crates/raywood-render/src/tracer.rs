@@ -77,7 +77,7 @@ impl Tracer<'_> {
     ) {
         match self {
             Self::Surfaces(structure) => {
-                structure.occluded_from_surfaces_serial(target, end, points, primitives, occluded)
+                structure.occluded_from_surfaces_serial(target, end, points, primitives, occluded);
             }
             Self::Instances(instances) => {
                 let ray = |&point: &Vec3| Ray::between(point, target).with_interval(0.0, end);

@@ -158,7 +158,7 @@ mod tests {
         let prepared = PreparedScene::new(&scene).expect("it builds");
         let view = default_view(&prepared, 1.6);
         for set in ray_sets(&prepared, &view, 1.6, 640).expect("a camera") {
-            let structure = structure_of(prepared);
+            let structure = structure_of(&prepared);
             let mut expected = answers(structure, set.kind, &set.rays);
             let sample = set.sample(64);
             let check = |expected: &[Answer]| check(structure, structure, &set, expected, &sample);

@@ -128,12 +128,14 @@ fn every_level_of_every_structure_holds_the_whole_scene() {
     let scene = still_life();
     for &kind in StructureKind::ALL {
         let prepared = PreparedScene::with_structure(&scene, kind).expect("a structure");
-        let levels = prepared.structure().stats().depth;
+        let levels = prepared.stats().depth;
         assert!(levels >= 1);
         for level in 0..levels {
             // Interior nodes of the level, and leaves down to it that are not empty.
             let mut expected = 0;
-            prepared.structure().visit_nodes(&mut |node| match node.references {
+            prepared.structure().expect("no instances").visit_nodes(&mut |node| match node
+                .references
+            {
                 None if node.level == level => expected += 1,
                 Some(1..) if node.level <= level => expected += 1,
                 _ => {}
@@ -164,7 +166,7 @@ fn a_scene_without_surfaces_has_no_levels() {
 fn the_lines_do_not_depend_on_the_number_of_threads() {
     let scene = still_life();
     let prepared = PreparedScene::with_structure(&scene, StructureKind::KdTree).expect("a tree");
-    let deepest = prepared.structure().stats().depth - 1;
+    let deepest = prepared.stats().depth - 1;
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| overlay(&prepared, &still_life_camera(), (170, 130), deepest))

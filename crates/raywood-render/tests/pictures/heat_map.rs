@@ -48,7 +48,7 @@ fn a_pixel_is_the_mean_of_its_rays_counts_in_every_structure() {
             for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
                 let of_ray = |ray| {
                     let mut counts = Counts::default();
-                    prepared.structure().intersect_probed(&ray, &mut counts);
+                    prepared.structure().expect("no instances").intersect_probed(&ray, &mut counts);
                     match quantity {
                         HeatQuantity::Nodes => counts.nodes,
                         HeatQuantity::Boxes => counts.boxes,

@@ -66,7 +66,7 @@ fn scene() -> Scene {
             materials: of_triangles,
             ..Mesh::default()
         },
-        spheres: Spheres::new(vec![([3.2, -0.6, 2.0], 0.6)]).expect("a sphere"),
+        spheres: Spheres::new(vec![(Vec3::new(3.2, -0.6, 2.0), 0.6)]).expect("a sphere"),
         sphere_materials: vec![1],
         instances: Instances::new(vec![2], end, placed).expect("good transforms"),
         materials,
@@ -110,7 +110,7 @@ fn instances_look_as_copies_to_every_integrator() {
     flat.flatten(1 << 20).expect("few triangles");
     assert!(flat.instances.is_empty());
     assert_eq!(flat.mesh.triangles.triangles().len() as u64, scene.visible_triangles());
-    for integrator in INTEGRATORS {
+    for integrator in &INTEGRATORS {
         // Single hits at edges differ, and numbers of triangles do.
         if integrator.name == "ids" {
             continue;
@@ -150,7 +150,7 @@ fn an_instance_of_everything_is_the_scene_to_every_pixel() {
     let end = whole.mesh.triangles.triangles().len() as u32;
     let placed = vec![Instance::new(0, Transform::IDENTITY)];
     instanced.instances = Instances::new(vec![0], end, placed).expect("an instance");
-    assert_eq!(instanced.bounds().contains(&whole.bounds()), true);
+    assert!(instanced.bounds().contains(&whole.bounds()));
     let options = RenderOptions { width: 80, height: 50, samples: 1, ..RenderOptions::default() };
     let [a, b] = [&whole, &instanced].map(|scene| picture(scene, &options));
     let differ = (0..50)

@@ -188,7 +188,10 @@ fn refusals_are_one_line_and_say_what_exists() {
             "there is no built-in scene 'terain', did you mean 'terrain'? (there are: hall, whitted, sphereflake, \
              terrain)",
         ),
-        ("", "there is no built-in scene '' (there are: hall, whitted, sphereflake, terrain)"),
+        (
+            "",
+            "there is no built-in scene '' (there are: hall, whitted, sphereflake, terrain, forest)",
+        ),
         (
             "terrain?sed=8",
             "the scene 'terrain' has no parameter 'sed', did you mean 'seed'? (there are: n, seed)",

@@ -173,7 +173,7 @@ impl Growth<'_> {
             joints.push(Joint { position, radius });
             let turn = kind.wobble[order] * self.rng.vector() + kind.rise[order] * Vec3::Y;
             direction = (direction + turn).normalize_or_zero();
-            position = position + step * direction;
+            position += step * direction;
         }
         let radius = stem.radius;
         self.plant.stem(&joints, sides, BARK, |point| kind.bark.color(point, radius));

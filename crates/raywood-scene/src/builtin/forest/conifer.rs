@@ -1,5 +1,7 @@
 //! Spruces: a straight trunk, whorls of branches, and on their twigs needles in tufts.
 
+use std::f32::consts::TAU;
+
 use raywood::Vec3;
 
 use super::materials::{BARK, LEAVES};
@@ -41,7 +43,7 @@ pub(super) fn spruce(seed: u64, fullness: f32) -> Plant {
         let turn = rng.angle();
         let shape = (1.0 - share).powf(0.82) * (0.72 + 0.28 * (share * 9.0).min(1.0));
         for branch in 0..count {
-            let angle = turn + (branch as f32 + rng.between(-0.25, 0.25)) * 6.283 / count as f32;
+            let angle = turn + (branch as f32 + rng.between(-0.25, 0.25)) * TAU / count as f32;
             let length = (LONGEST * shape * rng.between(0.7, 1.1)).max(0.18);
             let from = Vec3::new(0.0, height + rng.between(-0.12, 0.12), 0.0);
             add_branch(&mut plant, &mut rng, from, angle, length, share);
