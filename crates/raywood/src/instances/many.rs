@@ -8,6 +8,9 @@ use crate::{Hit, PreparedRay, Ray};
 /// How many rays at most go through the tree together. Always the same ones of a batch, so that no answer depends on threads.
 pub(super) const MOST: usize = 1024;
 
+/// As many rays at least go through an instance as one batch: preparing one takes about as long as tracing some thirty rays one by one, and only large ones become full packets.
+const FEWEST_TOGETHER: usize = 128;
+
 impl<B: Traceable> Tlas<B> {
     /// The closest hits of at most [`MOST`] rays with what the mask lets see.
     pub(super) fn closest_of_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
@@ -78,6 +81,12 @@ impl<B: Traceable> Visitor for Closest<'_, B> {
         if place.mask & self.mask == 0 {
             return;
         }
+        if rays.len() < FEWEST_TOGETHER {
+            for &ray in rays {
+                limits[ray as usize] = self.one(entry, ray, limits[ray as usize]);
+            }
+            return;
+        }
         self.seen.clear();
         self.numbers.clear();
         for &number in rays {
@@ -133,6 +142,12 @@ impl<B: Traceable> Visitor for Any<'_, B> {
     fn several(&mut self, entry: u32, rays: &[u32], limits: &mut [f32]) {
         let place = &self.placements[entry as usize];
         if place.mask & self.mask == 0 {
+            return;
+        }
+        if rays.len() < FEWEST_TOGETHER {
+            for &ray in rays {
+                limits[ray as usize] = self.one(entry, ray, limits[ray as usize]);
+            }
             return;
         }
         self.seen.clear();
