@@ -133,9 +133,18 @@ fn equally_near_hits_are_those_of_the_lowest_instance() {
     let eye = Vec3::new(0.3, 0.2, 5.0);
     let target = |number: usize| Vec3::new(number as f32 / 300.0 - 0.5, 0.1, 0.0);
     let rays: Vec<_> = (0..300).map(|number| Ray::new(eye, target(number) - eye)).collect();
+    let alone: Vec<_> = rays.iter().map(|ray| scene.intersect(ray).expect("a hit")).collect();
+    assert!(alone.iter().all(|hit| hit.instance == 0));
+
+    // Few rays go into instances one by one, so that distances are equal to the last digit.
     let mut hits = vec![None; rays.len()];
+    scene.intersect_batch(&rays[..100], &mut hits[..100]);
+    assert!(hits[..100].iter().zip(&alone).all(|(hit, alone)| *hit == Some(*alone)));
+
+    // Packets round, and of instances at the same place any may be named.
     scene.intersect_batch(&rays, &mut hits);
-    assert!(hits.iter().all(|hit| hit.is_some_and(|hit: Hit| hit.instance == 0)));
+    let agrees = |(hit, alone): (&Option<Hit>, &Hit)| hit.is_some_and(|hit| hit.agrees_with(alone));
+    assert!(hits.iter().zip(&alone).all(agrees));
 }
 
 #[test]
