@@ -76,7 +76,7 @@ impl<B> Clone for Instance<B> {
 ///   first: the numbers tell apart the instances of the lowest level, and [`locate`](Self::locate) says which of this scene's instances one belongs to.
 /// - At exactly equal `t` the lowest instance wins, and of it the primitive that its object finds: the lowest one, but where distances that differ there are one after rounding here.
 /// - No ray slips between triangles of one instance that share an edge.
-/// - Rays of batches that meet the same instance are traced through it together, which rounds differently: [`Hit::agrees_with`] says by how much. Answers never depend on the number of threads.
+/// - Rays of batches that meet the same instance are traced through it together, which rounds differently: [`Hit::agrees_with`] says by how much, and of equally near ones a higher instance may then be named. Answers never depend on the number of threads.
 /// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) do not count here.
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
 #[derive(Clone, Debug)]
