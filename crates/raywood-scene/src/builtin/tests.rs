@@ -186,7 +186,7 @@ fn refusals_are_one_line_and_say_what_exists() {
         (
             "terain?n=8",
             "there is no built-in scene 'terain', did you mean 'terrain'? (there are: hall, whitted, sphereflake, \
-             terrain)",
+             terrain, forest)",
         ),
         (
             "",
