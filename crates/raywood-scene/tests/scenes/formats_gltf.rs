@@ -323,11 +323,16 @@ fn many_and_deep_nodes() {
     let scene = load("deep.glb", cube(&nodes)).unwrap();
     assert_eq!(scene.bounds().max.x, 100_001.0);
 
-    // A small file that asks for 2^40 triangles is refused before any is made.
-    let nodes = format!(r#""nodes":[{}],"#, vec![r#"{"mesh":0}"#; 20_000].join(","));
+    // A small file that asks for very many triangles is refused before any is made, if they must be copied: nodes that flatten a mesh cannot share it.
     let primitive = r#"{"attributes":{"POSITION":0},"indices":1}"#;
-    let json = cube_json(&nodes).replace(primitive, &vec![primitive; 2000].join(","));
-    let error = error_of("many.glb", glb(&json, &cube_buffer()));
+    let many = |node: &str| {
+        let nodes = format!(r#""nodes":[{}],"#, vec![node; 20_000].join(","));
+        let json = cube_json(&nodes).replace(primitive, &vec![primitive; 2000].join(","));
+        glb(&json, &cube_buffer())
+    };
+    let scene = load("many.glb", many(r#"{"mesh":0}"#)).unwrap();
+    assert_eq!((scene.visible_triangles(), triangle_count(&scene)), (480_000_000, 24_000));
+    let error = error_of("many.glb", many(r#"{"mesh":0,"scale":[1,0,1]}"#));
     assert!(error.contains("its nodes show 480000000 triangles"), "{error}");
     // An array without bytes behind it, too.
     let json = cube_json(r#""nodes":[{"mesh":0}],"#).replacen("\"bufferView\":0,\"componentType\":5126,\"count\":8", "\"componentType\":5126,\"count\":4000000000,\"sparse\":{\"count\":0,\"indices\":{\"bufferView\":1,\"componentType\":5121},\"values\":{\"bufferView\":0}}", 1);
