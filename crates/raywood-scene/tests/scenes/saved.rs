@@ -4,9 +4,9 @@ use std::path::Path;
 
 use raywood::{Bvh, Joined, Vec3};
 use raywood_scene::{
-    Camera, Encoding, Light, LightKind, LoadOptions, Magnification, Material, MetallicRoughness,
-    Pattern, SavedScene, Scene, SurfaceTextures, Texture, TextureImage, TextureTransform, Wrap,
-    builtin, builtins, load_bytes, load_file, save_scene,
+    Camera, Encoding, Instances, Light, LightKind, LoadOptions, Magnification, Material,
+    MetallicRoughness, Pattern, SavedScene, Scene, SurfaceTextures, Texture, TextureImage,
+    TextureTransform, Wrap, builtin, builtins, load_bytes, load_file, save_scene,
 };
 use raywood_testkit::saved::{Forgery, correct_checksums};
 use raywood_testkit::{Rng, test_scenes};
@@ -38,8 +38,13 @@ fn comes_back(scene: &Scene) {
 
 #[test]
 fn every_builtin_comes_back() {
-    for scene in builtins() {
-        comes_back(&builtin(scene.name).expect("it is made"));
+    for entry in builtins() {
+        // Instances are not saved, and copies of the forest's would be too many.
+        let name = if entry.name == "forest" { "forest?n=3" } else { entry.name };
+        let mut scene = builtin(name).expect("it is made");
+        // Its ground and its plants where they grew are enough.
+        scene.instances = Instances::default();
+        comes_back(&scene);
     }
 }
 
