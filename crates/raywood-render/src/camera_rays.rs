@@ -117,7 +117,7 @@ impl CameraRays {
 
     /// The ray from the eye in a direction.
     #[inline(always)]
-    pub(crate) fn ray_along(&self, direction: impl Into<Vec3>) -> Ray {
+    pub(crate) fn ray_along(&self, direction: impl Into<[f32; 3]>) -> Ray {
         Ray::new(self.eye, direction)
     }
 

@@ -19,8 +19,8 @@ impl Aabb {
 
     /// The box with the given corners.
     #[inline]
-    pub fn new(min: impl Into<Vec3>, max: impl Into<Vec3>) -> Self {
-        Self { min: min.into(), max: max.into() }
+    pub fn new(min: impl Into<[f32; 3]>, max: impl Into<[f32; 3]>) -> Self {
+        Self { min: Vec3::from(min.into()), max: Vec3::from(max.into()) }
     }
 
     /// The smallest box around some points.

@@ -22,25 +22,25 @@ pub struct Ray {
 impl Ray {
     /// The ray from `origin` along `direction`, `0 <= t < infinity`.
     #[inline]
-    pub fn new(origin: impl Into<Vec3>, direction: impl Into<Vec3>) -> Self {
+    pub fn new(origin: impl Into<[f32; 3]>, direction: impl Into<[f32; 3]>) -> Self {
         Self {
-            origin: origin.into(),
+            origin: Vec3::from(origin.into()),
             t_min: 0.0,
-            direction: direction.into(),
+            direction: Vec3::from(direction.into()),
             t_max: f32::INFINITY,
         }
     }
 
     /// The ray from one point to another: `t` is 0 at `from` and 1 at `to`, which itself no longer counts.
     #[inline]
-    pub fn between(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
-        let from = from.into();
-        Self { origin: from, t_min: 0.0, direction: to.into() - from, t_max: 1.0 }
+    pub fn between(from: impl Into<[f32; 3]>, to: impl Into<[f32; 3]>) -> Self {
+        let from = Vec3::from(from.into());
+        Self { origin: from, t_min: 0.0, direction: Vec3::from(to.into()) - from, t_max: 1.0 }
     }
 
     /// As [`between`](Self::between), but ends a 4096th of the way before `to`, so that a surface that this lies on does not count.
     #[inline]
-    pub fn short_of(from: impl Into<Vec3>, to: impl Into<Vec3>) -> Self {
+    pub fn short_of(from: impl Into<[f32; 3]>, to: impl Into<[f32; 3]>) -> Self {
         Self::between(from, to).with_interval(0.0, Self::SHORT_END)
     }
 

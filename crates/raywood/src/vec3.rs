@@ -4,8 +4,8 @@ use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A point, vector or direction in three dimensions.
 ///
-/// Laid out as three consecutive `f32`, 12 bytes. Anything that converts from `[f32; 3]` can be passed where the
-/// library takes `impl Into<Vec3>`, so no maths crate is forced on the caller.
+/// Laid out as three consecutive `f32`, 12 bytes. Where the library takes points it takes `impl Into<[f32; 3]>`, so no maths crate is forced on the caller: arrays
+/// do, this type does, and so do the points and vectors of `glam`, `nalgebra` and `mint`. What it gives turns into `[f32; 3]` again, and from there into theirs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Vec3 {

@@ -63,23 +63,23 @@ impl SurfacePoint {
     /// The origin is moved off the surface to the side that `direction` points to, by a distance that follows from
     /// the coordinates' size, never by a fixed epsilon.
     #[inline]
-    pub fn spawn(&self, direction: impl Into<Vec3>) -> Ray {
-        let direction = direction.into();
+    pub fn spawn(&self, direction: impl Into<[f32; 3]>) -> Ray {
+        let direction = Vec3::from(direction.into());
         Ray::new(self.origin_towards(direction), direction)
     }
 
     /// A ray from this point towards `target`, where `t` is 1, that hits neither the surface it starts on nor one that the target lies
     /// on: it ends [a little before](Ray::short_of).
     #[inline]
-    pub fn spawn_towards(&self, target: impl Into<Vec3>) -> Ray {
-        let target = target.into();
+    pub fn spawn_towards(&self, target: impl Into<[f32; 3]>) -> Ray {
+        let target = Vec3::from(target.into());
         Ray::short_of(self.origin_towards(target - self.position), target)
     }
 
     /// Where rays start that leave this point to the side that `direction` points to: for whoever sends many.
     #[inline(always)]
-    pub fn origin_towards(&self, direction: impl Into<Vec3>) -> Vec3 {
-        self.offset(direction.into().dot(self.normal))
+    pub fn origin_towards(&self, direction: impl Into<[f32; 3]>) -> Vec3 {
+        self.offset(Vec3::from(direction.into()).dot(self.normal))
     }
 
     /// The position moved off the surface to the given side of the normal, each coordinate rounded away from it.

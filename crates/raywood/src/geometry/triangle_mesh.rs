@@ -86,14 +86,17 @@ impl std::error::Error for MeshError {}
 impl TriangleMesh {
     /// A mesh from vertex positions and, per triangle, three indices into them.
     ///
+    /// Positions are of any type that turns into `[f32; 3]`, as points of `glam`, `nalgebra` and `mint` do. Arrays and [`Vec3`] are taken over without being
+    /// copied. Of vertices or indices that lie otherwise in memory a [`MeshView`](crate::MeshView) can be made.
+    ///
     /// # Errors
     ///
     /// An index out of range, a position that is NaN or infinite, or more than 2^31 triangles.
-    pub fn new<P: Into<Vec3>>(
+    pub fn new<P: Into<[f32; 3]>>(
         positions: Vec<P>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
-        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
+        let positions: Vec<Vec3> = positions.into_iter().map(|p| Vec3::from(p.into())).collect();
         Self::of_arrays(positions.into(), triangles.into())
     }
 
@@ -121,12 +124,12 @@ impl TriangleMesh {
     /// # Errors
     ///
     /// Another number of positions, or one that is NaN or infinite.
-    pub fn with_positions<P: Into<Vec3>>(&self, positions: Vec<P>) -> Result<Self, MeshError> {
+    pub fn with_positions<P: Into<[f32; 3]>>(&self, positions: Vec<P>) -> Result<Self, MeshError> {
         let (before, now) = (self.positions.len(), positions.len());
         if before != now {
             return Err(MeshError::PositionCount { before, now });
         }
-        let positions: Vec<Vec3> = positions.into_iter().map(Into::into).collect();
+        let positions: Vec<Vec3> = positions.into_iter().map(|p| Vec3::from(p.into())).collect();
         check_finite(&positions)?;
         Ok(Self { positions: positions.into(), triangles: self.triangles.clone() })
     }

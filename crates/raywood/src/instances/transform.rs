@@ -57,20 +57,20 @@ impl Transform {
     }
 
     /// Moves by a vector.
-    pub fn translation(by: impl Into<Vec3>) -> Self {
-        let [x, y, z] = by.into().to_array();
+    pub fn translation(by: impl Into<[f32; 3]>) -> Self {
+        let [x, y, z] = by.into();
         Self::from_rows([[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]])
     }
 
     /// Scales along the axes; mirrors where a factor is negative.
-    pub fn scaling(by: impl Into<Vec3>) -> Self {
-        let [x, y, z] = by.into().to_array();
+    pub fn scaling(by: impl Into<[f32; 3]>) -> Self {
+        let [x, y, z] = by.into();
         Self::from_rows([[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]])
     }
 
     /// Turns around an axis through the origin, counter-clockwise seen from its end, by an angle in degrees. Around an axis without length nothing turns.
-    pub fn rotation(axis: impl Into<Vec3>, degrees: f32) -> Self {
-        let [x, y, z] = double(axis.into().normalize_or_zero());
+    pub fn rotation(axis: impl Into<[f32; 3]>, degrees: f32) -> Self {
+        let [x, y, z] = double(Vec3::from(axis.into()).normalize_or_zero());
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
         if x == 0.0 && y == 0.0 && z == 0.0 {
             return Self::IDENTITY;
@@ -96,13 +96,13 @@ impl Transform {
     }
 
     /// Where a point goes: computed in double precision and rounded once.
-    pub fn point(&self, point: impl Into<Vec3>) -> Vec3 {
-        single(self.point_in_double(double(point.into())))
+    pub fn point(&self, point: impl Into<[f32; 3]>) -> Vec3 {
+        single(self.point_in_double(double(Vec3::from(point.into()))))
     }
 
     /// What becomes of a vector between two points.
-    pub fn vector(&self, vector: impl Into<Vec3>) -> Vec3 {
-        single(self.vector_in_double(double(vector.into())))
+    pub fn vector(&self, vector: impl Into<[f32; 3]>) -> Vec3 {
+        single(self.vector_in_double(double(Vec3::from(vector.into()))))
     }
 
     /// What turns normals of surfaces into those of transformed surfaces, up to their length: the inverse transposed matrix, so that normals that point outside still do, of mirrored

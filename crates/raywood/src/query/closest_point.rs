@@ -48,9 +48,13 @@ impl<G: Geometry> Bvh<G> {
     /// assert_eq!(bvh.closest_point([1.0, 2.0, 3.0], 2.5), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn closest_point(&self, point: impl Into<Vec3>, max_distance: f32) -> Option<ClosestPoint> {
+    pub fn closest_point(
+        &self,
+        point: impl Into<[f32; 3]>,
+        max_distance: f32,
+    ) -> Option<ClosestPoint> {
         let mut answer = [None];
-        self.closest_points(&[point.into()], max_distance, &mut answer);
+        self.closest_points(&[Vec3::from(point.into())], max_distance, &mut answer);
         answer[0]
     }
 

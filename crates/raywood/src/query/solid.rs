@@ -47,9 +47,9 @@ impl<G: Geometry> Solid<'_, G> {
     /// to a few hundredths; on the surface itself anything between the numbers on both sides. 0 if the point is not finite.
     ///
     /// The same on all levels of instructions.
-    pub fn winding_number(&self, point: impl Into<Vec3>) -> f32 {
+    pub fn winding_number(&self, point: impl Into<[f32; 3]>) -> f32 {
         let mut answer = [0.0];
-        self.winding_numbers(&[point.into()], &mut answer);
+        self.winding_numbers(&[Vec3::from(point.into())], &mut answer);
         answer[0]
     }
 
@@ -68,15 +68,15 @@ impl<G: Geometry> Solid<'_, G> {
     /// Whether a point is inside: its [winding number](Self::winding_number) is a half at least. On the surface itself it may be told either way.
     ///
     /// However near the surface a point is, it is told right where double precision sees on which side of the nearest triangle it lies.
-    pub fn contains(&self, point: impl Into<Vec3>) -> bool {
+    pub fn contains(&self, point: impl Into<[f32; 3]>) -> bool {
         self.winding_number(point) >= 0.5
     }
 
     /// The distance from the surface, negative inside. `None` if there is no surface or the point is not finite. It costs what
     /// [`closest_point`](Bvh::closest_point) and [`contains`](Self::contains) cost, and is as right.
-    pub fn signed_distance(&self, point: impl Into<Vec3>) -> Option<f32> {
+    pub fn signed_distance(&self, point: impl Into<[f32; 3]>) -> Option<f32> {
         let mut answer = [None];
-        self.signed_distance_batch(&[point.into()], &mut answer);
+        self.signed_distance_batch(&[Vec3::from(point.into())], &mut answer);
         answer[0]
     }
 

@@ -22,8 +22,8 @@ pub struct Ball {
 impl Ball {
     /// The ball with the given centre and radius.
     #[inline]
-    pub fn new(center: impl Into<Vec3>, radius: f32) -> Self {
-        Self { center: center.into(), radius }
+    pub fn new(center: impl Into<[f32; 3]>, radius: f32) -> Self {
+        Self { center: Vec3::from(center.into()), radius }
     }
 }
 

@@ -26,8 +26,8 @@ impl Frustum {
 
     /// The frustum with the given corners: four around its front, and behind them, in the same order, four around its back. Each face is the plane along both
     /// of its diagonals, so corners should lie in one.
-    pub fn from_corners<P: Into<Vec3>>(corners: [P; 8]) -> Self {
-        let corners = corners.map(|corner| double(corner.into()));
+    pub fn from_corners<P: Into<[f32; 3]>>(corners: [P; 8]) -> Self {
+        let corners = corners.map(|corner| double(Vec3::from(corner.into())));
         let middle = scale(0.125, corners.into_iter().fold([0.0; 3], add));
         let faces: [[usize; 4]; 6] =
             [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
