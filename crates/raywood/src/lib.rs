@@ -17,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`TriangleMesh`] and [`Spheres`] are geometry, your own types can be through [`Geometry`], and [`Joined`] puts two kinds
-//!   into one tree.
+//! - [`TriangleMesh`] is geometry, and so are [`Spheres`] and [`Quads`]; your own types can be through [`Geometry`]. A
+//!   [`MeshView`] reads triangles from memory of your own, whatever form they have there. [`Joined`] puts two of them into one tree.
 //! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores. Its tree, the [`WideBvh`], is traced by vector instructions
 //!   ([`SimdLevel`]).
 //! - Besides rays it answers what is [closest](Bvh::closest_point), what lies [inside](Bvh::solid), what [overlaps](Bvh::overlapping) a region or
@@ -74,9 +74,11 @@ pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
 pub use error::BuildError;
 pub use geometry::{
-    Geometry, Joined, MeshError, MeshPart, PreparedRay, PrimitiveHit, PrimitivePoint, Spheres,
-    SpheresError, SurfacePoint, TriangleMesh,
+    Consecutive, IndexNumber, Indices, MeshError, MeshPart, MeshView, Strided, StridedError,
+    TriangleMesh, Vertices,
 };
+pub use geometry::{Geometry, Joined, PreparedRay, PrimitiveHit, PrimitivePoint, SurfacePoint};
+pub use geometry::{Quads, Spheres, SpheresError};
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use instances::{

@@ -1,14 +1,19 @@
 //! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
 
 mod block_distances;
+mod buffers;
 mod clip;
 mod closest_point;
 mod crossing;
 mod joined;
 mod mesh_part;
+mod mesh_view;
+mod of_triangles;
 mod prepared_ray;
+mod quads;
 mod separation;
 mod spheres;
+mod strided;
 mod surface;
 mod swept_sphere;
 mod triangle_block;
@@ -17,20 +22,26 @@ mod triangle_pair;
 mod watertight;
 
 pub(crate) use block_distances::Frame;
+pub use buffers::{IndexNumber, Indices, Vertices};
 pub(crate) use clip::round_down;
 pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
 pub(crate) use crossing::{cross_triangle, meets_front};
 pub use joined::Joined;
 pub use mesh_part::MeshPart;
+pub use mesh_view::{Consecutive, MeshView};
 pub use prepared_ray::PreparedRay;
+pub use quads::Quads;
 pub(crate) use separation::triangle_overlaps;
 pub use spheres::{Spheres, SpheresError};
+pub use strided::{Strided, StridedError};
 pub use surface::SurfacePoint;
 pub(crate) use swept_sphere::swept_sphere;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
 pub(crate) use triangle_pair::triangles_touch;
+
+use std::sync::Arc;
 
 use crate::{Aabb, Hit, Ray, Vec3};
 
@@ -48,7 +59,7 @@ pub struct PrimitiveHit {
 /// A numbered set of primitives that can be bounded and intersected: all that an acceleration structure asks for.
 ///
 /// Implement it for a type of your own and every structure, traversal and batch works with it. The primitives must
-/// not change while a structure is built over them.
+/// not change while a structure is built over them. References, `Box` and `Arc` hand everything on to what they point to, `dyn Geometry` too.
 pub trait Geometry: Sync {
     /// How many primitives there are; they are numbered from 0. Structures take at most 2^31.
     fn len(&self) -> usize;
@@ -168,79 +179,86 @@ pub trait Geometry: Sync {
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint;
 }
 
-impl<G: Geometry + ?Sized> Geometry for &G {
-    #[inline(always)]
-    fn len(&self) -> usize {
-        (**self).len()
-    }
+/// Has what points to a geometry hand on every question to it.
+macro_rules! hand_on {
+    ($([$($bound:ident)?] $pointer:ty),*) => {$(
+        impl<G: Geometry + ?Sized $(+ $bound)?> Geometry for $pointer {
+            #[inline(always)]
+            fn len(&self) -> usize {
+                (**self).len()
+            }
 
-    #[inline(always)]
-    fn bounds(&self, primitive: u32) -> Aabb {
-        (**self).bounds(primitive)
-    }
+            #[inline(always)]
+            fn bounds(&self, primitive: u32) -> Aabb {
+                (**self).bounds(primitive)
+            }
 
-    fn has_sound_bounds(&self) -> bool {
-        (**self).has_sound_bounds()
-    }
+            fn has_sound_bounds(&self) -> bool {
+                (**self).has_sound_bounds()
+            }
 
-    #[inline(always)]
-    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
-        (**self).clipped_bounds(primitive, cell)
-    }
+            #[inline(always)]
+            fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
+                (**self).clipped_bounds(primitive, cell)
+            }
 
-    #[inline(always)]
-    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
-        (**self).triangle(primitive)
-    }
+            #[inline(always)]
+            fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
+                (**self).triangle(primitive)
+            }
 
-    #[inline(always)]
-    fn prefetch(&self, primitive: u32) {
-        (**self).prefetch(primitive);
-    }
+            #[inline(always)]
+            fn prefetch(&self, primitive: u32) {
+                (**self).prefetch(primitive);
+            }
 
-    #[inline(always)]
-    fn prefetch_rest(&self, primitive: u32) {
-        (**self).prefetch_rest(primitive);
-    }
+            #[inline(always)]
+            fn prefetch_rest(&self, primitive: u32) {
+                (**self).prefetch_rest(primitive);
+            }
 
-    fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
-        (**self).bounding_ball(primitive)
-    }
+            fn bounding_ball(&self, primitive: u32) -> Option<(Vec3, f32)> {
+                (**self).bounding_ball(primitive)
+            }
 
-    #[inline(always)]
-    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
-        (**self).overlaps(primitive, cell)
-    }
+            #[inline(always)]
+            fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
+                (**self).overlaps(primitive, cell)
+            }
 
-    #[inline(always)]
-    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
-        (**self).intersect(primitive, ray)
-    }
+            #[inline(always)]
+            fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
+                (**self).intersect(primitive, ray)
+            }
 
-    #[inline]
-    fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
-        (**self).closest_point(primitive, point)
-    }
+            #[inline]
+            fn closest_point(&self, primitive: u32, point: Vec3) -> Option<PrimitivePoint> {
+                (**self).closest_point(primitive, point)
+            }
 
-    fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
-        (**self).winding_number(primitive, point)
-    }
+            fn winding_number(&self, primitive: u32, point: Vec3) -> f64 {
+                (**self).winding_number(primitive, point)
+            }
 
-    fn intersect_all(
-        &self,
-        primitive: u32,
-        ray: &PreparedRay,
-        found: &mut dyn FnMut(PrimitiveHit),
-    ) {
-        (**self).intersect_all(primitive, ray, found);
-    }
+            fn intersect_all(
+                &self,
+                primitive: u32,
+                ray: &PreparedRay,
+                found: &mut dyn FnMut(PrimitiveHit),
+            ) {
+                (**self).intersect_all(primitive, ray, found);
+            }
 
-    fn mask(&self, primitive: u32) -> u32 {
-        (**self).mask(primitive)
-    }
+            fn mask(&self, primitive: u32) -> u32 {
+                (**self).mask(primitive)
+            }
 
-    #[inline(always)]
-    fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        (**self).surface_point(ray, hit)
-    }
+            #[inline(always)]
+            fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+                (**self).surface_point(ray, hit)
+            }
+        }
+    )*};
 }
+
+hand_on!([] &G, [] Box<G>, [Send] Arc<G>);

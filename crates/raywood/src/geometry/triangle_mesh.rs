@@ -2,13 +2,11 @@
 
 use std::fmt;
 
-use super::clip::clipped_triangle_bounds;
-use super::separation::triangle_overlaps;
-use super::watertight::intersect_triangle;
-use super::{Geometry, PreparedRay, PrimitiveHit, SurfacePoint};
+use super::Geometry;
+use super::of_triangles::methods_of_triangles;
 use crate::simd::prefetch_item;
 use crate::storage::Array;
-use crate::{Aabb, Hit, Ray, Vec3};
+use crate::{Aabb, Vec3};
 
 /// Triangles as triples of indices into an array of vertex positions. Checked once, when made: every index is in
 /// range and every position finite, so no query has to ask again.
@@ -34,6 +32,22 @@ pub enum MeshError {
         index: u32,
         /// How many positions there are.
         positions: usize,
+    },
+    /// A quad's index points past the end of the positions.
+    QuadIndexOutOfRange {
+        /// The first such quad.
+        quad: usize,
+        /// Its offending index.
+        index: u32,
+        /// How many positions there are.
+        positions: usize,
+    },
+    /// Indices or vertices that are three to a triangle, but whose number is no multiple of three.
+    LeftOver {
+        /// How many there are.
+        count: usize,
+        /// Whether they are indices, not vertices.
+        indices: bool,
     },
     /// Some positions are NaN or infinite.
     NotFinite {
@@ -64,6 +78,16 @@ impl fmt::Display for MeshError {
                     f,
                     "triangle {triangle} uses vertex {index}, but there are {positions} vertices (0 is the first)"
                 )
+            }
+            Self::QuadIndexOutOfRange { quad, index, positions } => {
+                write!(
+                    f,
+                    "quad {quad} uses vertex {index}, but there are {positions} vertices (0 is the first)"
+                )
+            }
+            Self::LeftOver { count, indices } => {
+                let what = if *indices { "indices" } else { "vertices" };
+                write!(f, "{count} {what}, but three make a triangle and none may be left over")
             }
             Self::NotFinite { first, count } => {
                 write!(
@@ -105,11 +129,8 @@ impl TriangleMesh {
         positions: Array<Vec3>,
         triangles: Array<[u32; 3]>,
     ) -> Result<Self, MeshError> {
-        if triangles.len() > 1 << 31 {
-            return Err(MeshError::TooManyTriangles { triangles: triangles.len() });
-        }
-
-        check_finite(&positions)?;
+        check_count(triangles.len())?;
+        check_finite(positions.iter().copied())?;
 
         let in_range = |index: u32| (index as usize) < positions.len();
         if let Some(triangle) = triangles.iter().position(|t| !t.iter().all(|&i| in_range(i))) {
@@ -130,7 +151,7 @@ impl TriangleMesh {
             return Err(MeshError::PositionCount { before, now });
         }
         let positions: Vec<Vec3> = positions.into_iter().map(|p| Vec3::from(p.into())).collect();
-        check_finite(&positions)?;
+        check_finite(positions.iter().copied())?;
         Ok(Self { positions: positions.into(), triangles: self.triangles.clone() })
     }
 
@@ -169,12 +190,17 @@ impl TriangleMesh {
     }
 }
 
+/// Refuses more triangles than can be numbered.
+pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
+    if triangles > 1 << 31 { Err(MeshError::TooManyTriangles { triangles }) } else { Ok(()) }
+}
+
 /// Refuses positions that are NaN or infinite.
-fn check_finite(positions: &[Vec3]) -> Result<(), MeshError> {
-    match positions.iter().filter(|p| !p.is_finite()).count() {
+pub(super) fn check_finite(positions: impl Iterator<Item = Vec3> + Clone) -> Result<(), MeshError> {
+    match positions.clone().filter(|p| !p.is_finite()).count() {
         0 => Ok(()),
         count => {
-            let first = positions.iter().position(|p| !p.is_finite()).unwrap_or_default();
+            let first = positions.into_iter().position(|p| !p.is_finite()).unwrap_or_default();
             Err(MeshError::NotFinite { first, count })
         }
     }
@@ -185,25 +211,7 @@ impl Geometry for TriangleMesh {
         self.triangles.len()
     }
 
-    #[inline(always)]
-    fn bounds(&self, primitive: u32) -> Aabb {
-        let [a, b, c] = self.corners(primitive);
-        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
-    }
-
-    fn has_sound_bounds(&self) -> bool {
-        // Corners are finite, as was checked when it was made.
-        true
-    }
-
-    fn clipped_bounds(&self, primitive: u32, cell: &Aabb) -> Aabb {
-        clipped_triangle_bounds(self.corners(primitive), cell)
-    }
-
-    #[inline(always)]
-    fn triangle(&self, primitive: u32) -> Option<[Vec3; 3]> {
-        Some(self.corners(primitive))
-    }
+    methods_of_triangles!();
 
     #[inline(always)]
     fn prefetch(&self, primitive: u32) {
@@ -215,20 +223,5 @@ impl Geometry for TriangleMesh {
         if let Some(corners) = self.triangles.get(primitive as usize) {
             corners.iter().for_each(|&corner| prefetch_item(&self.positions, corner as usize));
         }
-    }
-
-    fn overlaps(&self, primitive: u32, cell: &Aabb) -> bool {
-        triangle_overlaps(self.corners(primitive), cell)
-    }
-
-    #[inline(always)]
-    fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
-        let [p0, p1, p2] = self.corners(primitive);
-        intersect_triangle(ray, p0, p1, p2)
-    }
-
-    #[inline(always)]
-    fn surface_point(&self, _ray: &Ray, hit: &Hit) -> SurfacePoint {
-        SurfacePoint::on_triangle(self.corners(hit.primitive), hit.u, hit.v)
     }
 }

@@ -15,6 +15,7 @@ mod kd_tree;
 mod moving_instances;
 mod octree;
 mod overlap;
+mod own_memory;
 mod packets;
 mod refit;
 mod reinsertion;
