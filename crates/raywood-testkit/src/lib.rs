@@ -1,4 +1,4 @@
-//! Test helpers of the workspace: a brute-force oracle in double precision, closed and nasty meshes, rays and points that look for trouble,
+//! Test helpers of the workspace: a brute-force oracle in double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
 //! pseudo-random numbers, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
 
 pub mod closed;
@@ -13,6 +13,7 @@ pub mod rays;
 mod rng;
 pub mod saved;
 pub mod shapes;
+pub mod solids;
 
 pub use rng::Rng;
 

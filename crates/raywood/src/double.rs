@@ -41,3 +41,33 @@ pub(crate) fn dot(a: Double3, b: Double3) -> f64 {
 pub(crate) fn cross(a: Double3, b: Double3) -> Double3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
+
+/// A distance along a ray in single precision. One that is not zero keeps its side of the origin: that decides between in and out.
+#[inline(always)]
+pub(crate) fn single_distance(t: f64) -> f32 {
+    let rounded = t as f32;
+    if t == 0.0 || rounded != 0.0 { rounded } else { f32::from_bits(1).copysign(rounded) }
+}
+
+/// The point of the segment from `start` that goes on by `axis`, that is closest to `point`, as a share of the way; zero if it has no length.
+#[inline]
+pub(crate) fn share_along(point: Double3, start: Double3, axis: Double3) -> f64 {
+    let (along, length) = (dot(sub(point, start), axis), dot(axis, axis));
+    if along <= 0.0 || length == 0.0 { 0.0 } else { (along / length).min(1.0) }
+}
+
+/// A vector of unit length, or the other one, which is, if it has no length.
+#[inline]
+pub(crate) fn unit_or(v: Double3, other: Double3) -> Double3 {
+    let length = dot(v, v).sqrt();
+    if length > 0.0 { scale(1.0 / length, v) } else { other }
+}
+
+/// Some unit vector across an axis, which need not be of unit length; one along x if it has none.
+pub(crate) fn some_unit_across(axis: Double3) -> Double3 {
+    // Across it and the coordinate axis that it is farthest from.
+    let smallest = (0..3).min_by(|&i, &j| axis[i].abs().total_cmp(&axis[j].abs())).unwrap_or(0);
+    let mut other = [0.0; 3];
+    other[smallest] = 1.0;
+    unit_or(cross(axis, other), [1.0, 0.0, 0.0])
+}

@@ -17,7 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`TriangleMesh`] is geometry, and so are [`Spheres`] and [`Quads`]; your own types can be through [`Geometry`]. A
+//! - [`TriangleMesh`] is geometry, and so are [`Spheres`], [`Discs`], [`Capsules`], [`Cylinders`], [`Quads`] and [`Boxes`]; your own types can be through [`Geometry`]. A
 //!   [`MeshView`] reads triangles from memory of your own, whatever form they have there. [`Joined`] puts two of them into one tree.
 //! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores. Its tree, the [`WideBvh`], is traced by vector instructions
 //!   ([`SimdLevel`]).
@@ -74,11 +74,14 @@ pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
 pub use error::BuildError;
 pub use geometry::{
+    Boxes, Capsule, Capsules, Cylinder, Cylinders, Disc, Discs, Quads, ShapeError, ShapeProblem,
+    Spheres, SpheresError,
+};
+pub use geometry::{
     Consecutive, IndexNumber, Indices, MeshError, MeshPart, MeshView, Strided, StridedError,
     TriangleMesh, Vertices,
 };
 pub use geometry::{Geometry, Joined, PreparedRay, PrimitiveHit, PrimitivePoint, SurfacePoint};
-pub use geometry::{Quads, Spheres, SpheresError};
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use instances::{

@@ -7,6 +7,7 @@
 
 use super::{PreparedRay, PrimitiveHit};
 use crate::Vec3;
+use crate::double::single_distance;
 
 /// A vertex as the ray sees it: relative to the origin, sheared so that the ray is the third axis (not yet scaled).
 #[derive(Clone, Copy)]
@@ -60,9 +61,7 @@ pub(crate) fn cross_triangle(ray: &PreparedRay, corners: [Vec3; 3]) -> Option<Pr
     let depth = (w * a.depth + u * b.depth + v * c.depth) / sum;
     let t = depth / f64::from(ray.direction[ray.axes[2]]);
 
-    // Keep the side of the origin where rounding would come to zero: it decides between in and out.
-    let rounded =
-        if t == 0.0 || t as f32 != 0.0 { t as f32 } else { f32::from_bits(1).copysign(t as f32) };
+    let rounded = single_distance(t);
     let hit = PrimitiveHit { t: rounded, u: (u / sum) as f32, v: (v / sum) as f32 };
     ray.accepts(rounded).then_some(hit)
 }

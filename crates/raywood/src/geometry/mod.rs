@@ -1,10 +1,16 @@
 //! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
 
+mod around_axis;
 mod block_distances;
+mod boxes;
 mod buffers;
+mod capsules;
+mod chord;
 mod clip;
 mod closest_point;
 mod crossing;
+mod cylinders;
+mod discs;
 mod joined;
 mod mesh_part;
 mod mesh_view;
@@ -12,6 +18,7 @@ mod of_triangles;
 mod prepared_ray;
 mod quads;
 mod separation;
+mod shape_error;
 mod spheres;
 mod strided;
 mod surface;
@@ -22,17 +29,22 @@ mod triangle_pair;
 mod watertight;
 
 pub(crate) use block_distances::Frame;
+pub use boxes::Boxes;
 pub use buffers::{IndexNumber, Indices, Vertices};
+pub use capsules::{Capsule, Capsules};
 pub(crate) use clip::round_down;
 pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
 pub(crate) use crossing::{cross_triangle, meets_front};
+pub use cylinders::{Cylinder, Cylinders};
+pub use discs::{Disc, Discs};
 pub use joined::Joined;
 pub use mesh_part::MeshPart;
 pub use mesh_view::{Consecutive, MeshView};
 pub use prepared_ray::PreparedRay;
 pub use quads::Quads;
 pub(crate) use separation::triangle_overlaps;
+pub use shape_error::{ShapeError, ShapeProblem};
 pub use spheres::{Spheres, SpheresError};
 pub use strided::{Strided, StridedError};
 pub use surface::SurfacePoint;

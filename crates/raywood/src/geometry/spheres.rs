@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use super::chord::{Chord, Line};
 use super::{Geometry, PreparedRay, PrimitiveHit, PrimitivePoint, SurfacePoint};
-use crate::double::{add, dot, double, scale, single, sub};
+use crate::double::{add, dot, double, scale, single, single_distance, sub};
 use crate::{Aabb, Hit, Ray, Vec3};
 
 /// Spheres given by centre and radius, hit from outside and from inside. Checked once, when made.
@@ -69,30 +70,22 @@ impl Spheres {
         self.spheres.iter().map(|&(c, r)| sphere_bounds(c, r)).fold(Aabb::EMPTY, Aabb::union)
     }
 
-    /// Where the line of a ray enters and leaves a sphere.
+    /// The part of a line inside a sphere.
     #[inline]
-    fn crossings(&self, primitive: u32, ray: &PreparedRay) -> Option<[f32; 2]> {
+    fn chord(&self, primitive: u32, line: &Line) -> Option<Chord> {
         let (center, radius) = self.spheres[primitive as usize];
-        let (o, d, c, r) =
-            (double(ray.origin), double(ray.direction), double(center), f64::from(radius));
-
-        // Start from the point of the ray nearest the centre: the discriminant is then a difference of small numbers
-        // however far away the sphere is (Haines et al., Ray Tracing Gems, chapter 7).
-        let to_center = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
-        let dd = dot(d, d);
-        let nearest = dot(to_center, d) / dd;
-        let offset = [0, 1, 2].map(|i| to_center[i] - nearest * d[i]);
-        let remaining = r * r - dot(offset, offset);
-        if remaining <= 0.0 || remaining.is_nan() {
-            return None;
-        }
-        let half_chord = (remaining / dd).sqrt();
-        Some([nearest - half_chord, nearest + half_chord].map(|t| t as f32))
+        Chord::of_ball(line, double(center), f64::from(radius))
     }
 }
 
 /// How thick a sphere's surface is where it is asked for cells that it passes through, per unit of its coordinates: some roundings of points on it.
 const OVERLAP_SLACK: f64 = 8.0 * f32::EPSILON as f64;
+
+/// The hit at a distance.
+#[inline(always)]
+fn at(t: f64) -> PrimitiveHit {
+    PrimitiveHit { t: single_distance(t), u: 0.0, v: 0.0 }
+}
 
 /// The box around a sphere, rounded outwards.
 fn sphere_bounds(center: Vec3, radius: f32) -> Aabb {
@@ -142,9 +135,7 @@ impl Geometry for Spheres {
 
     #[inline]
     fn intersect(&self, primitive: u32, ray: &PreparedRay) -> Option<PrimitiveHit> {
-        // The near crossing if it counts, else the far one: the ray may start inside.
-        let t = self.crossings(primitive, ray)?.into_iter().find(|&t| ray.accepts(t))?;
-        Some(PrimitiveHit { t, u: 0.0, v: 0.0 })
+        Some(at(self.chord(primitive, &ray.into())?.first(ray)?))
     }
 
     /// The closest point of the surface, from inside too. Of points equally close, as seen from the centre, one along x.
@@ -173,11 +164,9 @@ impl Geometry for Spheres {
         ray: &PreparedRay,
         found: &mut dyn FnMut(PrimitiveHit),
     ) {
-        // Both count even where rounding makes them one, so that in and out keep their turns.
-        let crossings = self.crossings(primitive, ray).into_iter().flatten();
-        crossings
-            .filter(|&t| ray.accepts(t))
-            .for_each(|t| found(PrimitiveHit { t, u: 0.0, v: 0.0 }));
+        if let Some(chord) = self.chord(primitive, &ray.into()) {
+            chord.all(ray, found, at);
+        }
     }
 
     fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {

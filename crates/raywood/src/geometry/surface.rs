@@ -6,6 +6,10 @@ use crate::{Ray, Vec3};
 /// 9 of them along the normal, and the next ray's test of the triangle is exact where it matters: `docs/numerics.md`.
 const TRIANGLE_CLEARANCE: f32 = 6.0 * f32::EPSILON;
 
+/// The same of discs, capsules, cylinders and boxes, per unit of their largest coordinate: 20 roundings. The position is off by less than 2 of them, and what is left is
+/// more than a ray falls by over any straight part of the surface if its direction or the normal is off by 4 roundings.
+pub(super) const ROUND_CLEARANCE: f32 = 10.0 * f32::EPSILON;
+
 /// A point on a surface, with a bound on how far off it may be: what the next ray starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
