@@ -18,7 +18,7 @@
 //! ```
 //!
 //! - [`TriangleMesh`] is geometry, and so are [`Spheres`], [`Discs`], [`Capsules`], [`Cylinders`], [`Quads`] and [`Boxes`]; your own types can be through [`Geometry`]. A
-//!   [`MeshView`] reads triangles from memory of your own, whatever form they have there. [`Joined`] puts two of them into one tree.
+//!   [`MeshView`] reads triangles from memory of your own, whatever form they have there. An [`Assembly`] puts any number of them into one tree, [`Joined`] two.
 //! - [`Bvh`] has the queries: closest hit, any hit, and both for slices of rays on all cores. Its tree, the [`WideBvh`], is traced by vector instructions
 //!   ([`SimdLevel`]).
 //! - Besides rays it answers what is [closest](Bvh::closest_point), what lies [inside](Bvh::solid), what [overlaps](Bvh::overlapping) a region or
@@ -74,8 +74,8 @@ pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
 pub use error::BuildError;
 pub use geometry::{
-    Boxes, Capsule, Capsules, Cylinder, Cylinders, Disc, Discs, Quads, ShapeError, ShapeProblem,
-    Spheres, SpheresError,
+    Assembly, Boxes, Capsule, Capsules, Cylinder, Cylinders, Disc, Discs, Quads, ShapeError,
+    ShapeProblem, Spheres, SpheresError,
 };
 pub use geometry::{
     Consecutive, IndexNumber, Indices, MeshError, MeshPart, MeshView, Strided, StridedError,

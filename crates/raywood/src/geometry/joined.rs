@@ -6,7 +6,7 @@ use crate::{Aabb, Hit, Ray, Vec3};
 /// Two geometries under one numbering: first all primitives of `first`, then all of `second`.
 ///
 /// One structure over both finds the closest hit among them, and which kind a primitive is costs one comparison.
-/// Nest it for more than two kinds.
+/// For more than two, or kinds that are not known before the program runs, there is [`Assembly`](super::Assembly).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Joined<A, B> {
     /// The geometry whose primitives come first.

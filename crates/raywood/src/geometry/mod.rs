@@ -1,6 +1,7 @@
 //! What rays can hit: the trait [`Geometry`] and the kinds of it that come with the library, one per file.
 
 mod around_axis;
+mod assembly;
 mod block_distances;
 mod boxes;
 mod buffers;
@@ -28,6 +29,7 @@ mod triangle_mesh;
 mod triangle_pair;
 mod watertight;
 
+pub use assembly::Assembly;
 pub(crate) use block_distances::Frame;
 pub use boxes::Boxes;
 pub use buffers::{IndexNumber, Indices, Vertices};

@@ -11,7 +11,7 @@ fn build<G: Geometry>(kind: StructureKind, geometry: G) -> Structure<G> {
 }
 
 /// Holds rays through the wide tree, on every level, against brute force: singly to the bit, in batches as far as these agree.
-fn check<G: Geometry + Copy>(geometry: G, rays: &[Ray], what: &str) {
+pub(crate) fn check<G: Geometry + Copy>(geometry: G, rays: &[Ray], what: &str) {
     let expected = build(StructureKind::BruteForce, geometry);
     let mut structure = build(StructureKind::BvhWide, geometry);
     assert_eq!(structure.validate(), Ok(()), "{what}");

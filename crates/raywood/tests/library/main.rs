@@ -1,6 +1,7 @@
 //! The tests of the library, one subject per file, in one program: what is generic is compiled once for all of them.
 
 mod all_hits;
+mod assemblies;
 mod bounding_balls;
 mod build_and_query;
 mod closest_point;
@@ -23,6 +24,7 @@ mod robustness;
 mod saved_forgeries;
 mod saved_trees;
 mod solid;
+mod solids;
 mod spatial_splits;
 mod sphere_cast;
 mod spheres;
