@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut scene = Assembly::new();
     let names = ["roof", "columns", "spring", "crates", "pond", "balls", "waves"];
-    scene.add(&roof);
+    scene.add(roof);
     scene.add(Cylinders::new(columns.to_vec())?);
     scene.add(Capsules::new(Capsule::along(&spring, 0.05).collect())?);
     scene.add(Boxes::new(vec![Aabb::new([-4.0, 0.5, 3.0], [-3.0, 1.5, 4.0])])?);

@@ -81,7 +81,7 @@ fn masks_of_geometries_and_of_their_primitives() {
             self.0.bounds(primitive)
         }
         fn mask(&self, primitive: u32) -> u32 {
-            if primitive % 2 == 0 { 0b001 } else { 0b111 }
+            if primitive.is_multiple_of(2) { 0b001 } else { 0b111 }
         }
         fn intersect(
             &self,
