@@ -1,5 +1,6 @@
 //! Pictures of surroundings: what shines from infinitely far away, all around, as panoramas by longitude and latitude.
 
+mod open_exr;
 mod radiance;
 
 use std::path::Path;
@@ -78,24 +79,22 @@ impl Environment {
     }
 }
 
-/// Loads a panorama from a Radiance file (`.hdr`).
+/// Loads a panorama from a Radiance or an OpenEXR file (`.hdr`, `.exr`); how it begins tells which.
 ///
 /// # Errors
 ///
 /// A file that cannot be read, is in another format, or is broken.
 pub fn load_environment(path: &Path) -> Result<Environment, LoadError> {
     let bytes = read_file(path)?;
-    if bytes.starts_with(b"#?") {
-        return radiance::decode(path, &bytes);
-    }
     let kind = match &bytes[..] {
+        [b'#', b'?', ..] => return radiance::decode(path, &bytes),
+        start if start.starts_with(&open_exr::MAGIC) => return open_exr::decode(path, &bytes),
         [] => "is empty",
-        [b'v', b'/', b'1', 1, ..] => "is an OpenEXR picture, which is not read yet",
         [0x89, b'P', b'N', b'G', ..] | [0xff, 0xd8, ..] => {
             "is a picture without light brighter than white"
         }
         _ => "is in no known format",
     };
-    let message = format!("{kind}: expected a Radiance picture (.hdr) of the surroundings");
-    Err(LoadError::new(path, Place::File, message))
+    let expected = "expected a Radiance or OpenEXR picture (.hdr, .exr) of the surroundings";
+    Err(LoadError::new(path, Place::File, format!("{kind}: {expected}")))
 }
