@@ -3,7 +3,7 @@
 use raywood_scene::{Camera, Light, luminance};
 
 use crate::PreparedScene;
-use crate::film::Image;
+use crate::image::Image;
 use crate::options::{RenderError, RenderOptions};
 use crate::progress::Progress;
 use crate::render::render;
@@ -38,6 +38,17 @@ pub fn exposure_for(
     let place = ((1.0 - MAY_BE_BRIGHTER) * brightness.len() as f32) as usize;
     let bright = brightness[place.min(brightness.len() - 1)];
     Ok(if bright > BRIGHT && bright.is_finite() { BRIGHT / bright } else { 1.0 })
+}
+
+/// The factor that makes the log-average of the brightness of all pixels that are lit a middle grey of 0.18: the key of Reinhard et al., "Photographic Tone
+/// Reproduction for Digital Images", 2002. 1 for a black picture.
+pub fn key_exposure(image: &Image) -> f32 {
+    const MIDDLE_GREY: f64 = 0.18;
+    let lit = image.pixels().iter().map(|&pixel| luminance(pixel));
+    let logarithms =
+        lit.filter(|light| light.is_normal() && *light > 0.0).map(|l| f64::from(l.ln()));
+    let (count, sum) = logarithms.fold((0u64, 0.0), |(count, sum), log| (count + 1, sum + log));
+    if count == 0 { 1.0 } else { (MIDDLE_GREY / (sum / count as f64).exp()) as f32 }
 }
 
 impl Image {

@@ -1,6 +1,6 @@
 //! Scenes to images: ray tracing on the `raywood` library.
 //!
-//! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`write_png`] writes the [`Image`]. [`heat_map`] shows what the
+//! [`PreparedScene`] makes a scene ready for rays, [`render`] follows them, [`ImageFormat`] writes the [`Image`]. [`heat_map`] shows what the
 //! structure does for each pixel, [`bounds_overlay`] its boxes.
 
 mod bounds_overlay;
@@ -8,16 +8,17 @@ mod bsdf;
 mod camera_rays;
 mod exposure;
 mod few_boxes;
-mod film;
 pub mod fresnel;
 mod heat_map;
+mod image;
+mod image_file;
 mod instanced;
 mod integrators;
+mod layers;
 mod light_sampling;
 mod lights;
 mod options;
 mod path_samples;
-mod png;
 mod power;
 mod prepare_error;
 mod prepared;
@@ -32,18 +33,20 @@ mod stats;
 mod surface_material;
 mod textured;
 mod tiles;
+mod tone_map;
 mod tracer;
 mod view;
 mod wave;
 
 pub use bounds_overlay::{BoundsOverlay, bounds_overlay};
 pub use camera_rays::{CameraError, CameraRays};
-pub use exposure::exposure_for;
-pub use film::{Image, soft_clip, srgb8};
+pub use exposure::{exposure_for, key_exposure};
 pub use heat_map::{HeatMap, HeatQuantity, heat_map};
+pub use image::{Image, srgb8};
+pub use image_file::{Contents, IMAGE_FORMATS, ImageFormat, WriteAndSeek, WriteOptions, write_png};
 pub use integrators::{INTEGRATORS, Integrator};
+pub use layers::{Layer, Values};
 pub use options::{RenderError, RenderOptions};
-pub use png::write_png;
 pub use prepare_error::PrepareError;
 pub use prepared::{PreparedScene, Surfaces};
 pub use progress::Progress;
@@ -52,4 +55,5 @@ pub use rgb_image::RgbImage;
 pub use sampling::PixelSamples;
 pub use shadows::shadow_ray;
 pub use stats::{RayCounts, RenderStats};
+pub use tone_map::{TONE_MAPS, ToneMap, soft_clip};
 pub use view::{Setting, View, choose_camera, choose_lights, default_view};

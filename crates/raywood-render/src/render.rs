@@ -6,7 +6,7 @@ use raywood_scene::{Camera, Light, Rgb};
 
 use crate::PreparedScene;
 use crate::camera_rays::CameraRays;
-use crate::film::Image;
+use crate::image::Image;
 use crate::integrators::Frame;
 use crate::lights::Lights;
 use crate::options::{RenderError, RenderOptions};

@@ -2,9 +2,9 @@
 
 mod bounds_overlay;
 mod common;
-mod film;
 mod first_hits;
 mod heat_map;
+mod image_files;
 mod instances;
 mod optics;
 mod path;

@@ -1,8 +1,9 @@
-//! The image: linear light per pixel, and how it becomes the eight bits of a picture file.
+//! The image: linear light per pixel, and how it becomes the bits of a picture file.
 
 use raywood_scene::{Rgb, linear_to_srgb};
 
 use crate::rgb_image::RgbImage;
+use crate::tone_map::{TONE_MAPS, ToneMap, soft_clip};
 
 /// Rows of linear light, the first row on top. 1 is the white of a picture; lights and highlights may exceed it. Or rows of
 /// [numbers](Self::from_numbers) that are no light.
@@ -11,8 +12,8 @@ pub struct Image {
     width: u32,
     height: u32,
     pixels: Vec<Rgb>,
-    /// Whether these are numbers and no light.
-    are_numbers: bool,
+    /// How light becomes what picture files show; numbers need nothing.
+    tone_map: Option<&'static ToneMap>,
 }
 
 impl Image {
@@ -27,7 +28,7 @@ impl Image {
             u64::from(width) * u64::from(height),
             "pixels of a {width}x{height} image"
         );
-        Self { width, height, pixels, are_numbers: false }
+        Self { width, height, pixels, tone_map: Some(&TONE_MAPS[0]) }
     }
 
     /// An image of numbers from 0 to 1, such as normals, row after row: picture files hold them as they are, neither compressed nor encoded.
@@ -36,7 +37,7 @@ impl Image {
     ///
     /// If there are not `width * height` pixels.
     pub fn from_numbers(width: u32, height: u32, pixels: Vec<Rgb>) -> Self {
-        Self { are_numbers: true, ..Self::from_pixels(width, height, pixels) }
+        Self { tone_map: None, ..Self::from_pixels(width, height, pixels) }
     }
 
     /// Columns.
@@ -83,11 +84,33 @@ impl Image {
         self.pixels.iter().flat_map(|&color| self.bytes(color)).collect()
     }
 
-    /// A pixel of this image as picture files hold it.
+    /// The image with its light shown in another way; numbers stay as they are.
+    #[must_use]
+    pub fn with_tone_map(self, tone_map: &'static ToneMap) -> Self {
+        Self { tone_map: self.tone_map.map(|_| tone_map), ..self }
+    }
+
+    /// Whether these are numbers and no light.
+    pub fn are_numbers(&self) -> bool {
+        self.tone_map.is_none()
+    }
+
+    /// A pixel of this image as picture files of 8 bits hold it.
     pub(crate) fn bytes(&self, pixel: Rgb) -> [u8; 3] {
-        match self.are_numbers {
-            true => pixel.to_array().map(|number| (255.0 * number + 0.5) as u8),
-            false => srgb8(pixel),
+        // The conversion from float to integer saturates, and takes NaN to zero.
+        self.shown(pixel).map(|value| (255.0 * value + 0.5) as u8)
+    }
+
+    /// A pixel of this image as picture files of 16 bits hold it.
+    pub(crate) fn words(&self, pixel: Rgb) -> [u16; 3] {
+        self.shown(pixel).map(|value| (65_535.0 * value + 0.5) as u16)
+    }
+
+    /// A pixel as picture files show it, from 0 to 1, light encoded in sRGB.
+    fn shown(&self, pixel: Rgb) -> [f32; 3] {
+        match self.tone_map {
+            None => pixel.to_array(),
+            Some(tone_map) => tone_map.apply(pixel).to_array().map(linear_to_srgb),
         }
     }
 
@@ -97,27 +120,7 @@ impl Image {
     }
 }
 
-/// Linear light up to this stays as it is; brighter light is compressed into what is left below white.
-const SHOULDER: f32 = 0.8;
-
-/// Compresses light brighter than a picture can show, keeping its hue.
-///
-/// With `m` the largest channel: up to 0.8 nothing changes. Above, `m` becomes `0.8 + 0.2 (1 - exp((0.8 - m) / 0.2))`,
-/// which goes on with the same slope and nears 1, and the other channels shrink in proportion.
-pub fn soft_clip(color: Rgb) -> Rgb {
-    let m = color.max_element();
-    if m <= SHOULDER {
-        return color;
-    }
-    if m == f32::INFINITY {
-        return Rgb::from(color.to_array().map(|x| if x == m { 1.0 } else { 0.0 }));
-    }
-    let room = 1.0 - SHOULDER;
-    let compressed = SHOULDER + room * (1.0 - ((SHOULDER - m) / room).exp());
-    (compressed / m) * color
-}
-
-/// Linear light as three bytes of sRGB. NaN becomes black.
+/// Linear light as three bytes of sRGB, [compressed](soft_clip) where it is bright. NaN becomes black.
 pub fn srgb8(color: Rgb) -> [u8; 3] {
     // The conversion from float to integer saturates, and takes NaN to zero.
     soft_clip(color).to_array().map(|linear| (255.0 * linear_to_srgb(linear) + 0.5) as u8)
