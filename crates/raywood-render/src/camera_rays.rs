@@ -6,6 +6,9 @@ use raywood::{Ray, Vec3};
 use raywood_scene::Camera;
 
 use crate::bounds_overlay::Projection;
+use crate::lens::Lens;
+use crate::options::RenderOptions;
+use crate::path_samples::PathSamples;
 use crate::sampling::PixelSamples;
 
 /// Why nothing can be seen through a camera.
@@ -42,7 +45,7 @@ impl fmt::Display for CameraError {
 
 impl std::error::Error for CameraError {}
 
-/// A pinhole camera in front of a grid of pixels.
+/// A camera in front of a grid of pixels: a pinhole, or a thin lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraRays {
     eye: Vec3,
@@ -50,6 +53,9 @@ pub struct CameraRays {
     corner: Vec3,
     step_x: Vec3,
     step_y: Vec3,
+    /// The line of sight, unit length.
+    forward: Vec3,
+    lens: Option<Lens>,
 }
 
 impl CameraRays {
@@ -87,7 +93,34 @@ impl CameraRays {
         let pixel = 2.0 * half_height / height as f32;
         let (step_x, step_y) = (pixel * right, -pixel * up);
         let corner = forward - (0.5 * width as f32) * step_x - (0.5 * height as f32) * step_y;
-        Ok(Self { eye, corner, step_x, step_y })
+        Ok(Self { eye, corner, step_x, step_y, forward, lens: None })
+    }
+
+    /// The same camera with a lens, if there is any.
+    #[must_use]
+    pub fn with_lens(self, lens: Option<Lens>) -> Self {
+        // A lens without extent is a pinhole, whose rays are traced faster.
+        Self { lens: lens.filter(|lens| lens.radius > 0.0), ..self }
+    }
+
+    /// The lens, if the camera is no pinhole.
+    #[inline(always)]
+    pub(crate) fn lens(&self) -> Option<&Lens> {
+        self.lens.as_ref()
+    }
+
+    /// How far in front of the eye a point on a ray of this direction is, by unit of length along the ray.
+    pub(crate) fn depth_along(&self, direction: Vec3) -> f32 {
+        self.forward.dot(direction)
+    }
+
+    /// The ray through a point of the lens that meets what the ray through its middle, of this direction, meets in the plane of focus.
+    #[inline]
+    pub(crate) fn through_lens(&self, lens: &Lens, direction: Vec3, path: PathSamples) -> Ray {
+        let axes = [self.step_x, -self.step_y].map(Vec3::normalize_or_zero);
+        let offset = lens.point(path.pair(PathSamples::LENS), axes);
+        let focused = lens.focus / self.depth_along(direction) * direction;
+        Ray::new(self.eye + offset, (focused - offset).normalize_or_zero())
     }
 
     /// The ray through a point of the picture, in pixels from its upper left corner (the first pixel's centre is
@@ -121,13 +154,31 @@ impl CameraRays {
         Ray::new(self.eye, direction)
     }
 
-    /// The primary rays of the pixel in column `x` and row `y`: [`PixelSamples`] says where they pass.
+    /// The primary rays of the pixel in column `x` and row `y`: [`PixelSamples`] says where they pass. Through the middle of the lens.
     #[inline]
     pub fn pixel_rays(&self, x: u32, y: u32, samples: u32) -> impl Iterator<Item = Ray> {
-        let pattern = PixelSamples::new(x, y, samples);
+        let options = RenderOptions { samples, ..RenderOptions::default() };
+        self.with_lens(None).rays_of([x, y], &options)
+    }
+
+    /// The primary rays of a pixel in a picture of these options.
+    pub(crate) fn rays_of(
+        self,
+        place: [u32; 2],
+        options: &RenderOptions,
+    ) -> impl Iterator<Item = Ray> + use<> {
+        let &RenderOptions { samples, filter, seed, .. } = options;
+        let pattern = PixelSamples::spread(place, samples, filter, seed);
+        let [x, y] = place.map(|x| x as f32 + 0.5);
         (0..samples).map(move |index| {
             let [dx, dy] = pattern.offset(index);
-            self.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy)
+            match &self.lens {
+                None => self.ray(x + dx, y + dy),
+                Some(lens) => {
+                    let path = PathSamples::seeded(place, index, seed);
+                    self.through_lens(lens, self.direction(x + dx, y + dy), path)
+                }
+            }
         })
     }
 

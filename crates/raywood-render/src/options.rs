@@ -6,6 +6,8 @@ use raywood::StructureKind;
 
 use crate::camera_rays::CameraError;
 use crate::integrators::{INTEGRATORS, Integrator};
+use crate::lens::Lens;
+use crate::pixel_filter::PixelFilter;
 use crate::tiles::TILE_SIZE;
 
 /// What a rendering is asked for.
@@ -17,6 +19,12 @@ pub struct RenderOptions {
     pub height: u32,
     /// Primary rays per pixel: 1 goes through the pixel's centre, more are spread over it.
     pub samples: u32,
+    /// How the rays of a pixel are spread around it.
+    pub filter: PixelFilter,
+    /// What tells pictures of the same scene apart: another seed has other samples, and so other noise.
+    pub seed: u32,
+    /// The lens in front of the eye, else a pinhole.
+    pub lens: Option<Lens>,
     /// How often light may be mirrored or let through on its way to the eye: 0 shows neither. What lies beyond is black.
     pub max_depth: u32,
     /// Rays that would count less than this in a pixel, in units of white, are not traced. A step of an 8-bit sRGB
@@ -35,6 +43,9 @@ impl Default for RenderOptions {
             width: 1280,
             height: 800,
             samples: 1,
+            filter: PixelFilter::default(),
+            seed: 0,
+            lens: None,
             max_depth: 10,
             cutoff: 1.0 / 1024.0,
             opaque_shadows: false,
@@ -83,6 +94,9 @@ impl RenderOptions {
         if !(Self::SMALLEST_CUTOFF..=1.0).contains(&self.cutoff) {
             return Err(RenderError::Cutoff { cutoff: self.cutoff });
         }
+        if let Some(lens) = self.lens.filter(|lens| !lens.is_sound()) {
+            return Err(RenderError::Lens(lens));
+        }
         Ok(())
     }
 }
@@ -129,6 +143,8 @@ pub enum RenderError {
         /// The cut-off asked for.
         cutoff: f32,
     },
+    /// No light passes, or nothing in front of the eye is in focus.
+    Lens(Lens),
     /// The structure has no such level to show.
     NoSuchLevel {
         /// The kind of structure.
@@ -179,6 +195,10 @@ impl fmt::Display for RenderError {
                 let smallest = RenderOptions::SMALLEST_CUTOFF;
                 write!(f, "a cut-off of {cutoff}: must be from {smallest} to 1")
             }
+            Self::Lens(Lens { radius, focus }) => write!(
+                f,
+                "a lens of radius {radius} in focus at {focus}: both must be finite, the focus above 0"
+            ),
             Self::NoSuchLevel { structure, level, levels } => {
                 let name = structure.name();
                 match levels.checked_sub(1) {

@@ -13,10 +13,19 @@ pub(crate) struct PathSamples {
 }
 
 impl PathSamples {
-    /// Path `index` of the pixel in column `x` and row `y`.
+    /// Where on the lens a path begins. No path meets as many surfaces that they had this number.
+    pub(crate) const LENS: u32 = u32::MAX;
+
+    /// Path `index` of the pixel in column `x` and row `y`, for seed 0.
+    #[cfg(test)]
+    pub(crate) fn new(place: [u32; 2], index: u32) -> Self {
+        Self::seeded(place, index, 0)
+    }
+
+    /// Path `index` of the pixel in column `x` and row `y`. Another seed has other numbers.
     #[inline]
-    pub(crate) fn new([x, y]: [u32; 2], index: u32) -> Self {
-        Self { pixel: mix(x ^ mix(y ^ 0x85eb_ca6b)), index }
+    pub(crate) fn seeded([x, y]: [u32; 2], index: u32, seed: u32) -> Self {
+        Self { pixel: mix(x ^ mix(y ^ 0x85eb_ca6b ^ mix(seed))), index }
     }
 
     /// The numbers of decision `decision`, both at least 0 and below 1.

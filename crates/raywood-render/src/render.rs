@@ -5,14 +5,13 @@ use std::time::Instant;
 use raywood_scene::{Camera, Light, Rgb};
 
 use crate::PreparedScene;
-use crate::camera_rays::CameraRays;
 use crate::image::Image;
 use crate::integrators::Frame;
 use crate::lights::Lights;
 use crate::options::{RenderError, RenderOptions};
 use crate::progress::Progress;
 use crate::stats::RenderStats;
-use crate::tiles::fill_tiles;
+use crate::tiles::{TilePass, fill_tiles};
 
 /// Renders the scene as the camera sees it, on the threads of the current rayon pool.
 ///
@@ -32,17 +31,22 @@ pub fn render(
 ) -> Result<(Image, RenderStats), RenderError> {
     options.validate()?;
     let (width, height) = (options.width, options.height);
-    let camera = CameraRays::new(camera, width, height)?;
-    let frame = Frame { scene, lights: &Lights::new(lights), camera, options, progress };
+    let lights = Lights::new(lights);
+    let frame = Frame::new(scene, &lights, camera, options, progress)?;
     let started = Instant::now();
     let renderer = options.integrator.start(&frame);
+    let (pass, share) = (TilePass::all(options.samples), 1.0 / options.samples as f32);
 
     let (pixels, rays) = fill_tiles(
         (width, height),
         Rgb::ZERO,
         options.memory_bytes(),
         progress,
-        |tile, pixels| renderer.render_tile(tile, pixels),
+        |tile, pixels| {
+            let rays = renderer.render_tile(tile, &pass, pixels);
+            pixels.iter_mut().for_each(|pixel| *pixel = share * *pixel);
+            rays
+        },
     )?;
     let image = match options.integrator.shows_light {
         true => Image::from_pixels(width, height, pixels),

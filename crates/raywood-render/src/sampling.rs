@@ -1,14 +1,17 @@
-//! Where in and around a pixel its rays go: Owen-scrambled Sobol points, warped to a tent filter.
+//! Where in and around a pixel its rays go: Owen-scrambled Sobol points, spread by a filter.
 //!
 //! The points of a pixel are the first two dimensions of Sobol's sequence (1967), a (0,2)-sequence: any first 2^k of
 //! them put one point into each of the 2^k boxes of every shape that halving makes. Each pixel scrambles them in its
 //! own way, which keeps that property and takes the structure out (Owen 1995), by the hash of Laine and Karras
 //! (2011) as refined in Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
 
+use crate::pixel_filter::PixelFilter;
+
 /// The points of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelSamples {
     samples: u32,
+    filter: PixelFilter,
     seeds: [u32; 2],
     /// The bits of a coordinate that the number of samples can fill, as a mask, and half of the last of them.
     filled: u32,
@@ -16,13 +19,19 @@ pub struct PixelSamples {
 }
 
 impl PixelSamples {
-    /// The points of the pixel in column `x` and row `y`, `samples` of them.
+    /// The points of the pixel in column `x` and row `y`, `samples` of them, for the filter of usual pictures and seed 0.
     #[inline]
     pub fn new(x: u32, y: u32, samples: u32) -> Self {
-        let pixel = mix(x ^ mix(y ^ 0x5bd1_e995));
+        Self::spread([x, y], samples, PixelFilter::default(), 0)
+    }
+
+    /// The points of the pixel in a column and a row, `samples` of them, for a filter. Another seed scrambles them in another way.
+    #[inline]
+    pub fn spread([x, y]: [u32; 2], samples: u32, filter: PixelFilter, seed: u32) -> Self {
+        let pixel = mix(x ^ mix(y ^ 0x5bd1_e995 ^ mix(seed)));
         let seeds = [mix(pixel ^ 0x68bc_21eb), mix(pixel ^ 0x02e5_be93)];
         let half = (1 << 31) >> samples.next_power_of_two().trailing_zeros();
-        Self { samples, seeds, filled: !(half | (half - 1)), half }
+        Self { samples, filter, seeds, filled: !(half | (half - 1)), half }
     }
 
     /// Point `index` in the unit square, both coordinates at least 0 and below 1.
@@ -37,12 +46,17 @@ impl PixelSamples {
 
     /// The offset of ray `index` from the pixel's centre, in pixels.
     ///
-    /// Of a single ray it is zero. More are spread like a tent of two pixels' width: filter importance sampling (Ernst,
-    /// Stamminger and Greiner 2006), so that all rays of a pixel weigh the same and pixels stay independent.
+    /// Of a single ray it is zero. More are spread like the filter.
     #[inline]
     pub fn offset(&self, index: u32) -> [f32; 2] {
         let point = self.point(index);
-        [0, 1].map(|dimension| point.offset(dimension, self.seeds[dimension]))
+        [0, 1].map(|dimension| point.offset(self.filter, dimension, self.seeds[dimension]))
+    }
+
+    /// How the points are spread.
+    #[inline(always)]
+    pub(crate) fn filter(&self) -> PixelFilter {
+        self.filter
     }
 
     /// What tells this pixel from others.
@@ -86,18 +100,10 @@ impl UnscrambledPoint {
 
     /// A coordinate of the offset from the centre of the pixel that has this seed.
     #[inline(always)]
-    pub(crate) fn offset(&self, dimension: usize, seed: u32) -> f32 {
-        let offset = tent(self.coordinate(dimension, seed));
+    pub(crate) fn offset(&self, filter: PixelFilter, dimension: usize, seed: u32) -> f32 {
+        let offset = filter.offset(self.coordinate(dimension, seed));
         if self.is_single { 0.0 } else { offset }
     }
-}
-
-/// A uniform number in 0 to 1 as one distributed like a tent from -1 to 1: the inverse of its cumulative distribution.
-#[inline(always)]
-fn tent(u: f32) -> f32 {
-    // One root for both sides, so that no branch is needed.
-    let root = (2.0 * if u < 0.5 { u } else { 1.0 - u }).sqrt();
-    if u < 0.5 { root - 1.0 } else { 1.0 - root }
 }
 
 /// The second dimension of Sobol's sequence as a binary fraction. Its direction numbers are the rows of Pascal's
@@ -192,6 +198,9 @@ mod tests {
         assert_eq!(first, PixelSamples::new(3, 4, 16).unit_square(5));
         assert_ne!(first, PixelSamples::new(4, 3, 16).unit_square(5));
         assert_ne!(first, PixelSamples::new(3, 5, 16).unit_square(5));
+        let seeded = |seed| PixelSamples::spread([3, 4], 16, PixelFilter::Tent, seed);
+        assert_eq!(first, seeded(0).unit_square(5));
+        assert_ne!(first, seeded(1).unit_square(5));
     }
 
     /// The mean and variance of a tent from -1 to 1 are 0 and 1/6.

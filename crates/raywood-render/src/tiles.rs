@@ -1,5 +1,7 @@
 //! The image cut into square tiles, in an order that keeps neighbours together.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use raywood_scene::Rgb;
 
@@ -51,7 +53,7 @@ impl Tile {
         let Self { x, y, .. } = *self;
         let right = self.width.min(left + SQUARE_SIZE);
         let bottom = self.height.min(top + SQUARE_SIZE);
-        let blocks = |range: std::ops::Range<u32>| range.step_by(BLOCK_SIZE as usize);
+        let blocks = |range: Range<u32>| range.step_by(BLOCK_SIZE as usize);
         blocks(top..bottom)
             .flat_map(move |row| blocks(left..right).map(move |column| [column, row]))
             .flat_map(move |[column, row]| {
@@ -60,6 +62,39 @@ impl Tile {
                 rows.flat_map(move |row| columns.clone().map(move |column| [column, row]))
             })
             .map(move |[column, row]| (row * TILE_SIZE + column, [x + column, y + row]))
+    }
+}
+
+/// What of a tile is rendered in a pass: for each of its squares, in their order, which samples of all its pixels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct TilePass {
+    pub(crate) samples:
+        [Range<u32>; ((TILE_SIZE / SQUARE_SIZE) * (TILE_SIZE / SQUARE_SIZE)) as usize],
+}
+
+impl TilePass {
+    /// The first samples of every square.
+    pub(crate) fn all(samples: u32) -> Self {
+        Self { samples: std::array::from_fn(|_| 0..samples) }
+    }
+
+    /// Whether nothing is rendered.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.samples.iter().all(Range::is_empty)
+    }
+
+    /// The squares of a tile of which something is rendered, each with its samples.
+    pub(crate) fn squares(&self, tile: &Tile) -> impl Iterator<Item = (Range<u32>, [u32; 2])> {
+        let squares = self.samples.iter().cloned().zip(tile.squares());
+        squares.filter(|(samples, _)| !samples.is_empty())
+    }
+
+    /// How many samples that are in all pixels of a tile.
+    pub(crate) fn pixel_samples(&self, tile: &Tile) -> u64 {
+        let count = |(samples, square): (Range<u32>, _)| {
+            samples.len() as u64 * tile.pixels_in_blocks(square).count() as u64
+        };
+        self.squares(tile).map(count).sum()
     }
 }
 

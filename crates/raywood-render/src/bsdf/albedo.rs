@@ -131,7 +131,7 @@ fn albedo_row(row: usize) -> AlbedoRow {
         let (ggx, wo) = (Ggx { alpha: alpha_of(row) }, direction(column));
         let mut sum = Albedo::default();
         for index in 0..FACETS {
-            let h = ggx.sample_visible(wo, PathSamples::new([0, 0], index).pair(0));
+            let h = ggx.sample_visible(wo, PathSamples::seeded([0, 0], index, 0).pair(0));
             let wi = 2.0 * wo.dot(h) * h - wo;
             if wi.z > 0.0 {
                 let share = ggx.masking_shadowing(wo, wi) / ggx.masking(wo);

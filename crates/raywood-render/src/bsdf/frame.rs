@@ -43,7 +43,7 @@ pub(crate) fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
 /// A point of the unit disk, evenly distributed and without tearing neighbours apart: Shirley and Chiu, "A Low Distortion Map Between Disk and
 /// Square", 1997.
 #[inline]
-fn disk(u: [f32; 2]) -> [f32; 2] {
+pub(crate) fn disk(u: [f32; 2]) -> [f32; 2] {
     let [x, y] = u.map(|u| 2.0 * u - 1.0);
     if x == 0.0 && y == 0.0 {
         return [0.0; 2];

@@ -94,7 +94,7 @@ fn lost_row(row: usize, eta: f32) -> LostRow {
     let kept = |column: usize| {
         let wo = direction(column);
         let facet = |index: u32| {
-            let h = ggx.sample_visible(wo, PathSamples::new([0, 0], index).pair(0));
+            let h = ggx.sample_visible(wo, PathSamples::seeded([0, 0], index, 0).pair(0));
             let interface = dielectric(wo.dot(h), eta);
             let mirrored = 2.0 * wo.dot(h) * h - wo;
             let bent = refract(-wo, h, eta, interface.cos_transmitted).normalize_or_zero();

@@ -44,15 +44,15 @@ pub fn heat_map(
     progress: &Progress,
 ) -> Result<HeatMap, RenderError> {
     options.validate()?;
-    let &RenderOptions { width, height, samples, .. } = options;
-    let camera = CameraRays::new(camera, width, height)?;
+    let &RenderOptions { width, height, samples, lens, .. } = options;
+    let camera = CameraRays::new(camera, width, height)?.with_lens(lens);
     let structure = scene.structure().ok_or(RenderError::Instances)?;
     let bytes = options.memory_bytes();
     let (values, rays) = fill_tiles((width, height), 0.0, bytes, progress, |tile, pixels| {
         for (row, y) in (tile.y..tile.y + tile.height).enumerate() {
             for (column, x) in (tile.x..tile.x + tile.width).enumerate() {
                 let mut counts = Counts::default();
-                for ray in camera.pixel_rays(x, y, samples) {
+                for ray in camera.rays_of([x, y], options) {
                     if progress.is_cancelled() {
                         return RayCounts::default();
                     }

@@ -8,11 +8,11 @@ use raywood_scene::Rgb;
 use super::{Frame, TileRenderer};
 use crate::path_samples::PathSamples;
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
+use crate::tiles::{Tile, TilePass, TilePixels};
 use crate::wave::Traced;
 use crate::wave::columns::get;
 use crate::wave::find::FindSurfaces;
-use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::primary::{PrimaryRays, TracedPrimary};
 use crate::wave::ray_queue::{RayQueue, Travelled};
 use crate::wave::surfaces::Surfaces;
 use crate::wave::textured_surfaces::TextureMemory;
@@ -78,28 +78,33 @@ thread_local! {
 }
 
 impl<S: Shown> TileRenderer for FirstHits<'_, S> {
-    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
-        SCRATCH.with_borrow_mut(|scratch| self.fill(tile, pixels, scratch))
+    fn render_tile(&self, tile: &Tile, pass: &TilePass, pixels: &mut TilePixels) -> RayCounts {
+        SCRATCH.with_borrow_mut(|scratch| self.fill(tile, pass, pixels, scratch))
     }
 }
 
 impl<S: Shown> FirstHits<'_, S> {
-    fn fill(&self, tile: &Tile, pixels: &mut TilePixels, scratch: &mut Scratch) -> RayCounts {
+    fn fill(
+        &self,
+        tile: &Tile,
+        pass: &TilePass,
+        pixels: &mut TilePixels,
+        scratch: &mut Scratch,
+    ) -> RayCounts {
         let Frame { scene, camera, options, progress, .. } = self.frame;
         let level = scene.simd_level().unwrap_or_else(SimdLevel::active);
         let mut counts = RayCounts::default();
-        for square in tile.squares() {
-            scratch.primary.reset(tile, square, options.samples);
-            for index in 0..options.samples {
+        for (indices, square) in pass.squares(tile) {
+            scratch.primary.reset(tile, square, options);
+            for index in indices {
                 let Scratch { primary, primary_hits: hits, .. } = &mut *scratch;
-                level.run(SendPrimary { camera, primary, index });
+                primary.trace(self.frame, index, level, hits);
                 let eye = camera.eye();
-                scene.tracer().intersect_from(eye, &primary.directions, hits);
                 counts.primary += primary.len() as u64;
 
                 let (primary, hits) = (&scratch.primary, &scratch.primary_hits);
                 let seen = |ray| Seen { pixel: primary.pixel(ray), share: 1.0, travelled: 0.0 };
-                let samples = |pixel| samples_of(tile, pixel, index);
+                let samples = |pixel| samples_of(tile, pixel, index, options.seed);
                 let memory = Memory {
                     surfaces: &mut scratch.surfaces,
                     textures: &mut scratch.textures,
@@ -114,8 +119,6 @@ impl<S: Shown> FirstHits<'_, S> {
                 }
             }
         }
-        let samples = options.samples as f32;
-        pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples) * *pixel);
         counts
     }
 
@@ -142,7 +145,7 @@ impl<S: Shown> FirstHits<'_, S> {
             let wave = wave.traced(hits, 0..wave.len());
             let memory = Memory { surfaces, textures, colors, behind };
             let seen = |ray: usize| wave.known(ray);
-            let samples = |pixel| samples_of(tile, pixel, index);
+            let samples = |pixel| samples_of(tile, pixel, index, self.frame.options.seed);
             counts += self.show(&wave, level, (seen, samples), memory, pixels);
         }
         scratch.behind.clear();
@@ -197,9 +200,8 @@ impl<S: Shown> FirstHits<'_, S> {
 }
 
 /// The random numbers of sample `index` of a pixel of a tile.
-fn samples_of(tile: &Tile, pixel: u16, index: u32) -> PathSamples {
-    let [column, row] = tile.place(u32::from(pixel));
-    PathSamples::new([column, row], index)
+fn samples_of(tile: &Tile, pixel: u16, index: u32, seed: u32) -> PathSamples {
+    PathSamples::seeded(tile.place(u32::from(pixel)), index, seed)
 }
 
 /// Memory for the hits of a wave.

@@ -13,13 +13,15 @@ mod wireframe;
 
 use std::fmt;
 
+use raywood_scene::Camera;
+
 use crate::PreparedScene;
-use crate::camera_rays::CameraRays;
+use crate::camera_rays::{CameraError, CameraRays};
 use crate::lights::Lights;
 use crate::options::RenderOptions;
 use crate::progress::Progress;
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
+use crate::tiles::{Tile, TilePass, TilePixels};
 
 /// A method of following light, or of showing something else.
 #[derive(Clone, Copy)]
@@ -39,9 +41,9 @@ type Start = for<'a> fn(&'a Frame<'a>) -> Box<dyn TileRenderer + 'a>;
 
 /// A picture that is begun.
 pub(crate) trait TileRenderer: Sync {
-    /// Computes the pixels of a tile and counts the rays. Called once per tile, so that a method may trace its rays one by one, as packets or as
-    /// streams.
-    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts;
+    /// Adds the samples of a pass to the pixels of a tile, and counts the rays. Called once per tile and pass, so that a method may trace its rays one by one,
+    /// as packets or as streams.
+    fn render_tile(&self, tile: &Tile, pass: &TilePass, pixels: &mut TilePixels) -> RayCounts;
 }
 
 /// All methods; the first is the default.
@@ -81,12 +83,28 @@ pub(crate) struct Frame<'a> {
     pub(crate) camera: CameraRays,
     pub(crate) options: &'a RenderOptions,
     pub(crate) progress: &'a Progress,
+    /// Of how many rays of a pixel each stands for its part, where textures are looked at.
+    pub(crate) footprint_samples: u32,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    /// The frame of a picture with all the samples of its options.
+    pub(crate) fn new(
+        scene: &'a PreparedScene<'a>,
+        lights: &'a Lights,
+        camera: &Camera,
+        options: &'a RenderOptions,
+        progress: &'a Progress,
+    ) -> Result<Self, CameraError> {
+        let camera =
+            CameraRays::new(camera, options.width, options.height)?.with_lens(options.lens);
+        let footprint_samples = options.samples;
+        Ok(Self { scene, lights, camera, options, progress, footprint_samples })
+    }
+
     /// By how much the cone that a primary ray stands for widens on a way of length 1: one of several rays of a pixel stands for a part of it.
     #[inline(always)]
     pub(crate) fn spread(&self) -> f32 {
-        self.camera.pixel_width() / (self.options.samples as f32).sqrt()
+        self.camera.pixel_width() / (self.footprint_samples as f32).sqrt()
     }
 }

@@ -2,9 +2,14 @@
 
 use super::{Traced, WAVE};
 use crate::camera_rays::CameraRays;
+use crate::integrators::Frame;
+use crate::lens::Lens;
+use crate::options::RenderOptions;
+use crate::path_samples::PathSamples;
+use crate::pixel_filter::PixelFilter;
 use crate::sampling::PixelSamples;
 use crate::tiles::Tile;
-use raywood::{Hit, HitColumns, Vec3, Vectorized};
+use raywood::{Hit, HitColumns, Ray, SimdLevel, Vec3, Vectorized};
 
 /// The pixels of a square of a tile, those of a block together.
 #[derive(Default)]
@@ -12,6 +17,10 @@ pub(crate) struct PrimaryRays {
     pixels: Vec<Pixel>,
     /// Where one ray of each goes.
     pub(crate) directions: Vec<Vec3>,
+    /// Where it starts, if not at the eye; memory for the rays and what they hit.
+    origins: Vec<Vec3>,
+    rays: Vec<Ray>,
+    found: Vec<Option<Hit>>,
 }
 
 /// A pixel and where its primary rays pass.
@@ -25,13 +34,65 @@ struct Pixel {
 
 impl PrimaryRays {
     /// Takes the pixels of a square of a tile.
-    pub(crate) fn reset(&mut self, tile: &Tile, square: [u32; 2], samples: u32) {
+    pub(crate) fn reset(&mut self, tile: &Tile, square: [u32; 2], options: &RenderOptions) {
         self.pixels.clear();
+        self.origins.clear();
+        let &RenderOptions { samples, filter, seed, .. } = options;
         // Not `extend`, which would step through the nested ranges from outside, pixel by pixel.
-        tile.pixels_in_blocks(square).for_each(|(number, [x, y])| {
-            let samples = PixelSamples::new(x, y, samples);
-            self.pixels.push(Pixel { number, place: [x, y], samples });
+        tile.pixels_in_blocks(square).for_each(|(number, place)| {
+            let samples = PixelSamples::spread(place, samples, filter, seed);
+            self.pixels.push(Pixel { number, place, samples });
         });
+    }
+
+    /// Finds out where ray `index` of every pixel goes, and what it hits.
+    pub(crate) fn trace(
+        &mut self,
+        frame: &Frame<'_>,
+        index: u32,
+        level: SimdLevel,
+        hits: &mut HitColumns,
+    ) {
+        let Frame { scene, camera, .. } = frame;
+        level.run(SendPrimary { camera, primary: self, index });
+        match camera.lens() {
+            None => {
+                scene.tracer().intersect_from(camera.eye(), &self.directions, hits);
+            }
+            Some(lens) => self.trace_through_lens(frame, lens, index, hits),
+        }
+    }
+
+    /// Has the rays pass through points of the lens, each its own, and finds what they hit.
+    fn trace_through_lens(
+        &mut self,
+        frame: &Frame<'_>,
+        lens: &Lens,
+        index: u32,
+        hits: &mut HitColumns,
+    ) {
+        let Self { pixels, directions, origins, rays, found } = self;
+        let Frame { scene, camera, options, .. } = frame;
+        rays.clear();
+        rays.extend(pixels.iter().zip(&*directions).map(|(pixel, &direction)| {
+            let path = PathSamples::seeded(pixel.place, index, options.seed);
+            camera.through_lens(lens, direction, path)
+        }));
+        origins.clear();
+        origins.extend(rays.iter().map(|ray| ray.origin));
+        directions.clear();
+        directions.extend(rays.iter().map(|ray| ray.direction));
+        found.resize(rays.len(), None);
+        scene.tracer().intersect_batch(rays, found);
+        *hits = HitColumns::new(rays.len());
+        for (number, hit) in found.iter().enumerate() {
+            let Some(hit) = hit else { continue };
+            (hits.t[number], hits.u[number], hits.v[number]) = (hit.t, hit.u, hit.v);
+            hits.primitive[number] = hit.primitive;
+        }
+        if scene.has_instances() {
+            hits.instance = found.iter().map(|hit| hit.map_or(0, |hit| hit.instance)).collect();
+        }
     }
 
     /// How many pixels these are.
@@ -47,10 +108,10 @@ impl PrimaryRays {
 }
 
 /// Finds out where ray `index` of every pixel goes.
-pub(crate) struct SendPrimary<'a> {
-    pub(crate) camera: &'a CameraRays,
-    pub(crate) primary: &'a mut PrimaryRays,
-    pub(crate) index: u32,
+struct SendPrimary<'a> {
+    camera: &'a CameraRays,
+    primary: &'a mut PrimaryRays,
+    index: u32,
 }
 
 impl Vectorized for SendPrimary<'_> {
@@ -58,7 +119,8 @@ impl Vectorized for SendPrimary<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { camera, primary: PrimaryRays { pixels, directions: rays }, index } = self;
+        let Self { camera, primary, index } = self;
+        let PrimaryRays { pixels, directions: rays, .. } = primary;
 
         // Where the rays pass, in columns.
         let count = pixels.len().min(WAVE);
@@ -70,9 +132,21 @@ impl Vectorized for SendPrimary<'_> {
         }
         if let Some(Pixel { samples, .. }) = pixels.first() {
             let point = samples.point(index);
+            // Once for the usual filter, so that its loop is one of vectors.
             for dimension in 0..2 {
-                for number in 0..count {
-                    places[dimension][number] += point.offset(dimension, seeds[dimension][number]);
+                let places = &mut places[dimension][..count];
+                let pairs = places.iter_mut().zip(&seeds[dimension][..count]);
+                match samples.filter() {
+                    PixelFilter::Tent => {
+                        for (place, &seed) in pairs {
+                            *place += point.offset(PixelFilter::Tent, dimension, seed);
+                        }
+                    }
+                    filter => {
+                        for (place, &seed) in pairs {
+                            *place += point.offset(filter, dimension, seed);
+                        }
+                    }
                 }
             }
         }
@@ -103,8 +177,8 @@ impl Traced for TracedPrimary<'_> {
     }
 
     #[inline(always)]
-    fn origin(&self, _ray: usize) -> Vec3 {
-        self.eye
+    fn origin(&self, ray: usize) -> Vec3 {
+        self.primary.origins.get(ray).copied().unwrap_or(self.eye)
     }
 
     #[inline(always)]

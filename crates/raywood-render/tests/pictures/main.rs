@@ -10,6 +10,7 @@ mod optics;
 mod path;
 mod references;
 mod rendering;
+mod sampling;
 mod textures;
 mod view;
 mod whitted;

@@ -23,7 +23,7 @@ use std::cell::RefCell;
 
 use super::{Integrator, TileRenderer};
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
+use crate::tiles::{Tile, TilePass, TilePixels};
 use picture::Picture;
 use waves::{Scratch, Waves};
 
@@ -41,10 +41,10 @@ thread_local! {
 }
 
 impl TileRenderer for Picture<'_> {
-    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
+    fn render_tile(&self, tile: &Tile, pass: &TilePass, pixels: &mut TilePixels) -> RayCounts {
         SCRATCH.with_borrow_mut(|scratch| {
             let mut waves = Waves::new(self, tile, pixels, scratch);
-            waves.follow_all();
+            waves.follow_all(pass);
             waves.counts()
         })
     }

@@ -106,7 +106,9 @@ impl Scatterer<'_> {
         }
 
         // Go on through what is not there, or does not bend light.
-        let path = PathSamples::new(self.tile.place(u32::from(walk.pixel)), walk.sample);
+        let place = self.tile.place(u32::from(walk.pixel));
+        let seed = self.picture.frame.options.seed;
+        let path = PathSamples::seeded(place, walk.sample, seed);
         let first = (u32::from(walk.depth) << 16) | (u32::from(walk.holes) << 4);
         let dice = Dice { path, first };
         let [straight_choice, roulette] = dice.pair(Decision::Straight);

@@ -6,12 +6,11 @@ use raywood_scene::{Background, Camera, Material, MetallicRoughness, Rgb, Scene}
 use super::heuristic::Strategy;
 use super::picture::Picture;
 use crate::PreparedScene;
-use crate::camera_rays::CameraRays;
 use crate::integrators::{Frame, TileRenderer};
 use crate::lights::Lights;
 use crate::options::RenderOptions;
 use crate::progress::Progress;
-use crate::tiles::fill_tiles;
+use crate::tiles::{TilePass, fill_tiles};
 
 fn made_of(metallic: f32, roughness: f32) -> Material {
     let made_of = MetallicRoughness {
@@ -56,17 +55,14 @@ fn light_of_floor(scene: &Scene, strategy: Strategy, samples: u32) -> f64 {
     let (eye, target) = (Vec3::new(0.0, 1.5, 3.0), Vec3::new(0.0, 0.0, 0.5));
     let camera = Camera { name: String::new(), eye, target, up: Vec3::Y, fov_y: 30.0 };
     let progress = Progress::new();
-    let frame = Frame {
-        scene: &prepared,
-        lights: &Lights::default(),
-        camera: CameraRays::new(&camera, 16, 16).expect("a camera"),
-        options: &options,
-        progress: &progress,
-    };
+    let lights = Lights::default();
+    let frame = Frame::new(&prepared, &lights, &camera, &options, &progress).expect("a camera");
     let picture = Picture { strategy, ..Picture::new(&frame) };
-    let fill = |tile: &_, pixels: &mut _| picture.render_tile(tile, pixels);
+    let pass = TilePass::all(samples);
+    let fill = |tile: &_, pixels: &mut _| picture.render_tile(tile, &pass, pixels);
     let (pixels, _) = fill_tiles((16, 16), Rgb::ZERO, 0, &progress, fill).expect("pixels");
-    pixels.iter().map(|pixel| f64::from(pixel.y)).sum::<f64>() / pixels.len() as f64
+    let sum = pixels.iter().map(|pixel| f64::from(pixel.y)).sum::<f64>();
+    sum / (f64::from(samples) * pixels.len() as f64)
 }
 
 /// Asking lights, waiting for scattered rays to meet them, and both together find the same light, on surfaces of every kind, from every kind of light.

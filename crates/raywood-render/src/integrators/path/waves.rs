@@ -8,9 +8,9 @@ use super::shadow_rays::ShadowRays;
 use super::walks::{Primary, Walked, Walks};
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
+use crate::tiles::{Tile, TilePass, TilePixels};
 use crate::wave::find::FindSurfaces;
-use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::wave::primary::{PrimaryRays, TracedPrimary};
 use crate::wave::surfaces::Surfaces;
 use crate::wave::textured_surfaces::TextureMemory;
 use crate::wave::{TRACED, WAVE};
@@ -60,13 +60,12 @@ impl<'a> Waves<'a> {
         self.counts
     }
 
-    /// Follows all paths of the tile, if nobody asks to stop.
-    pub(super) fn follow_all(&mut self) {
+    /// Follows all paths of a pass in the tile, if nobody asks to stop.
+    pub(super) fn follow_all(&mut self, pass: &TilePass) {
         let Frame { options, progress, .. } = self.picture.frame;
-        let samples = options.samples;
-        for square in self.tile.squares() {
-            self.scratch.primary.reset(self.tile, square, samples);
-            for sample in 0..samples {
+        for (samples, square) in pass.squares(self.tile) {
+            self.scratch.primary.reset(self.tile, square, options);
+            for sample in samples {
                 self.trace_primary(sample);
                 while self.scratch.waiting.len() >= TRACED {
                     self.trace_wave();
@@ -84,17 +83,14 @@ impl<'a> Waves<'a> {
         }
         let Scratch { shadows, .. } = &mut *self.scratch;
         shadows.trace(self.picture, 1, self.pixels, &mut self.counts);
-        self.pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples as f32) * *pixel);
     }
 
     /// Traces ray `sample` of every pixel of the square, and has the paths scatter.
     fn trace_primary(&mut self, sample: u32) {
         let Scratch { primary, primary_hits: hits, .. } = &mut *self.scratch;
-        let Frame { scene, camera, .. } = self.picture.frame;
         self.counts.primary += primary.len() as u64;
-        self.level.run(SendPrimary { camera, primary, index: sample });
-        let eye = camera.eye();
-        scene.tracer().intersect_from(eye, &primary.directions, hits);
+        primary.trace(self.picture.frame, sample, self.level, hits);
+        let eye = self.picture.frame.camera.eye();
 
         let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, shadows, .. } =
             &mut *self.scratch;

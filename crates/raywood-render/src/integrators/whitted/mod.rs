@@ -17,7 +17,7 @@ use std::cell::RefCell;
 
 use super::{Frame, Integrator, TileRenderer};
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
+use crate::tiles::{Tile, TilePass, TilePixels};
 use waves::{Scratch, Waves};
 
 /// The registry's line for this method.
@@ -39,10 +39,10 @@ thread_local! {
 }
 
 impl TileRenderer for Whitted<'_> {
-    fn render_tile(&self, tile: &Tile, pixels: &mut TilePixels) -> RayCounts {
+    fn render_tile(&self, tile: &Tile, pass: &TilePass, pixels: &mut TilePixels) -> RayCounts {
         SCRATCH.with_borrow_mut(|scratch| {
             let mut waves = Waves::new(self.frame, pixels, scratch);
-            waves.follow_all(tile);
+            waves.follow_all(tile, pass);
             waves.counts()
         })
     }

@@ -7,8 +7,8 @@ use super::queue::{Followed, Queue, Waiting};
 use super::shade::{ShadeWave, Shader};
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
-use crate::tiles::{Tile, TilePixels};
-use crate::wave::primary::{PrimaryRays, SendPrimary, TracedPrimary};
+use crate::tiles::{Tile, TilePass, TilePixels};
+use crate::wave::primary::{PrimaryRays, TracedPrimary};
 use crate::wave::surfaces::Surfaces;
 use crate::wave::textured_surfaces::TextureMemory;
 use crate::wave::{TRACED, WAVE};
@@ -53,13 +53,12 @@ impl<'a> Waves<'a> {
         self.counts
     }
 
-    /// Follows all rays of the tile, if nobody asks to stop.
-    pub(super) fn follow_all(&mut self, tile: &Tile) {
-        let samples = self.frame.options.samples;
-        for square in tile.squares() {
+    /// Follows all rays of a pass in the tile, if nobody asks to stop.
+    pub(super) fn follow_all(&mut self, tile: &Tile, pass: &TilePass) {
+        for (samples, square) in pass.squares(tile) {
             // One ray of each pixel at a time: the more samples, the more waves, but none wider.
-            self.scratch.primary.reset(tile, square, samples);
-            for index in 0..samples {
+            self.scratch.primary.reset(tile, square, self.frame.options);
+            for index in samples {
                 self.trace_primary(index);
                 while let Some(depth) = self.scratch.waiting.take_full(&mut self.scratch.wave) {
                     self.trace_wave(depth);
@@ -76,18 +75,15 @@ impl<'a> Waves<'a> {
             }
         }
         self.add_direct_light(1);
-        self.pixels.iter_mut().for_each(|pixel| *pixel = (1.0 / samples as f32) * *pixel);
     }
 
     /// Traces ray `index` of every pixel, and shades what they hit.
     fn trace_primary(&mut self, index: u32) {
         let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, direct, .. } =
             &mut *self.scratch;
-        let Frame { scene, camera, .. } = self.frame;
         self.counts.primary += primary.len() as u64;
-        self.level.run(SendPrimary { camera, primary, index });
-        let eye = camera.eye();
-        scene.tracer().intersect_from(eye, &primary.directions, hits);
+        primary.trace(self.frame, index, self.level, hits);
+        let eye = self.frame.camera.eye();
 
         let shader = Shader {
             frame: self.frame,
