@@ -6,6 +6,7 @@
 mod bounds_overlay;
 mod bsdf;
 mod camera_rays;
+mod denoise;
 mod exposure;
 mod few_boxes;
 mod film;
@@ -44,13 +45,14 @@ mod wave;
 
 pub use bounds_overlay::{BoundsOverlay, bounds_overlay};
 pub use camera_rays::{CameraError, CameraRays};
+pub use denoise::denoise;
 pub use exposure::{exposure_for, key_exposure};
 pub use film::{Film, FilmPixel};
 pub use heat_map::{HeatMap, HeatQuantity, heat_map};
 pub use image::{Image, srgb8};
 pub use image_file::{Contents, IMAGE_FORMATS, ImageFormat, WriteAndSeek, WriteOptions, write_png};
-pub use integrators::{INTEGRATORS, Integrator};
-pub use layers::{Layer, Values};
+pub use integrators::{Features, INTEGRATORS, Integrator, NO_ID, features, primitive_ids};
+pub use layers::{Aov, Layer, LayerSources, Values};
 pub use lens::{Lens, depth_at};
 pub use options::{RenderError, RenderOptions};
 pub use passes::{Ended, Goal, noise, render_passes};

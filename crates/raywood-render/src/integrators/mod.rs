@@ -3,6 +3,7 @@
 mod albedo;
 mod ambient_occlusion;
 mod depth;
+mod features;
 mod first_hits;
 mod ids;
 mod normals;
@@ -22,6 +23,8 @@ use crate::options::RenderOptions;
 use crate::progress::Progress;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePass, TilePixels};
+
+pub use features::{Features, NO_ID, features, ids as primitive_ids};
 
 /// A method of following light, or of showing something else.
 #[derive(Clone, Copy)]

@@ -2,6 +2,7 @@
 
 mod bounds_overlay;
 mod common;
+mod features;
 mod first_hits;
 mod heat_map;
 mod image_files;
