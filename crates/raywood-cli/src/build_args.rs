@@ -14,6 +14,7 @@ use crate::progress_bar::during_build;
 
 /// The options of the build.
 #[derive(clap::Args)]
+#[command(next_help_heading = "Acceleration structure")]
 pub(crate) struct BuildArgs {
     /// fastest, fast, balanced, high or best build
     ///

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use crate::interrupt::EXIT_CODE;
+
 /// What went wrong, as one line for the user.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -10,6 +12,8 @@ pub(crate) enum Failure {
     BadInput(String),
     /// Something failed that could have worked: exit code 1.
     WhileRunning(String),
+    /// Ctrl-C stopped it; what there was is kept: exit code 130.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -28,13 +32,15 @@ impl Failure {
         match self {
             Self::BadInput(_) => ExitCode::from(2),
             Self::WhileRunning(_) => ExitCode::from(1),
+            Self::Interrupted(_) => ExitCode::from(EXIT_CODE),
         }
     }
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::BadInput(message) | Self::WhileRunning(message)) = self;
+        let (Self::BadInput(message) | Self::WhileRunning(message) | Self::Interrupted(message)) =
+            self;
         f.write_str(message)
     }
 }

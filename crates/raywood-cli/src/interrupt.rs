@@ -1,10 +1,10 @@
-//! Ctrl-C: clean up and end at once, with exit code 130.
+//! Ctrl-C: clean up and end at once, with exit code 130; or, where something can be kept, ask for an end first.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The exit code of a program that Ctrl-C stopped, by convention 128 plus the signal's number.
-const EXIT_CODE: i32 = 130;
+pub(crate) const EXIT_CODE: u8 = 130;
 
 /// The unfinished file to delete, if one is being written.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -16,15 +16,45 @@ fn unfinished() -> MutexGuard<'static, Option<PathBuf>> {
 /// From now on Ctrl-C ends the program, whatever it is doing.
 pub(crate) fn install() {
     let installed = ctrlc::set_handler(|| {
+        if let Some(ask) = asked().take() {
+            ask();
+            return;
+        }
         // Holding the lock until the end keeps the file from being finished meanwhile.
         let unfinished = unfinished();
         if let Some(path) = unfinished.as_deref() {
             let _ = std::fs::remove_file(path);
         }
-        std::process::exit(EXIT_CODE);
+        std::process::exit(EXIT_CODE.into());
     });
     // Without a handler Ctrl-C still ends the program, only less tidily.
     drop(installed);
+}
+
+/// What asks for an end, if anything does.
+type Ask = Box<dyn FnOnce() + Send>;
+
+static ASK: Mutex<Option<Ask>> = Mutex::new(None);
+
+fn asked() -> MutexGuard<'static, Option<Ask>> {
+    ASK.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// While this lives, the first Ctrl-C asks work to end early and to keep what it has; the next one ends the program.
+pub(crate) struct AskOnInterrupt(());
+
+impl AskOnInterrupt {
+    /// Says how the work is asked.
+    pub(crate) fn new(ask: impl FnOnce() + Send + 'static) -> Self {
+        *asked() = Some(Box::new(ask));
+        Self(())
+    }
+}
+
+impl Drop for AskOnInterrupt {
+    fn drop(&mut self) {
+        *asked() = None;
+    }
 }
 
 /// While this lives, Ctrl-C deletes a file.

@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            print::error(&failure);
+            print::failure(&failure);
             failure.exit_code()
         }
     }

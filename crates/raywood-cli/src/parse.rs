@@ -1,9 +1,10 @@
 //! Values on the command line: points, sizes, lights.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
-use raywood_render::{HeatQuantity, INTEGRATORS, Integrator};
+use raywood_render::{Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, TONE_MAPS, ToneMap};
 
 /// A point or direction, `X,Y,Z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,11 +112,100 @@ fn edit_distance(from: &str, to: &str) -> usize {
     distances[to.len()]
 }
 
-/// An exposure in stops, as the factor that it means.
-pub(crate) fn exposure(text: &str) -> Result<f32, String> {
+/// How much of the light is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Exposure {
+    Factor(f32),
+    Auto,
+}
+
+/// An exposure in stops, or what finds one.
+pub(crate) fn exposure(text: &str) -> Result<Exposure, String> {
     match text.parse::<f32>() {
-        Ok(stops) if (-32.0..=32.0).contains(&stops) => Ok(stops.exp2()),
-        _ => Err("expected stops from -32 to 32: each doubles the light".to_owned()),
+        _ if text == "auto" => Ok(Exposure::Auto),
+        Ok(stops) if (-32.0..=32.0).contains(&stops) => Ok(Exposure::Factor(stops.exp2())),
+        _ => {
+            Err("expected stops from -32 to 32, each of which doubles the light, or auto"
+                .to_owned())
+        }
+    }
+}
+
+/// The name of a way of tone mapping.
+pub(crate) fn tone_map(text: &str) -> Result<&'static ToneMap, String> {
+    ToneMap::by_name(text).ok_or_else(|| {
+        let names: Vec<_> = TONE_MAPS.iter().map(|tone_map| tone_map.name).collect();
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+/// Layers beside a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Aovs(pub(crate) Vec<Aov>);
+
+/// Names of layers between commas, or all of them.
+pub(crate) fn aovs(text: &str) -> Result<Aovs, String> {
+    if text == "all" {
+        return Ok(Aovs(Aov::ALL.to_vec()));
+    }
+    let mut found = Vec::new();
+    for name in text.split(',') {
+        let Some(aov) = Aov::from_name(name.trim()) else {
+            let names = Aov::ALL.map(Aov::name).join(", ");
+            return Err(format!("`{name}` is no layer: expected some of {names}, or all"));
+        };
+        if !found.contains(&aov) {
+            found.push(aov);
+        }
+    }
+    Ok(Aovs(found))
+}
+
+/// The name of a filter of pixels.
+pub(crate) fn pixel_filter(text: &str) -> Result<PixelFilter, String> {
+    PixelFilter::from_name(text).ok_or_else(|| {
+        let names = PixelFilter::ALL.map(PixelFilter::name);
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+/// A relative error, as a share or in percent.
+pub(crate) fn noise(text: &str) -> Result<f32, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    match number.trim().parse::<f32>().map(|number| unit * number) {
+        Ok(noise) if noise > 0.0 && noise < 1.0 => Ok(noise),
+        _ => Err("expected a relative error above 0 and below 1, as in 0.02 or 2%".to_owned()),
+    }
+}
+
+/// A time, in seconds or with a unit.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let (number, unit) = units
+        .into_iter()
+        .find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)))
+        .unwrap_or((text, 1.0));
+    let seconds = number.trim().parse::<f64>().ok().filter(|number| *number > 0.0);
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(unit * seconds).ok())
+        .ok_or_else(|| "expected a time, as in 30s, 5m or 1.5h".to_owned())
+}
+
+/// What is in focus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Focus {
+    /// What is so far from the eye.
+    Distance(f32),
+    /// What is seen at a pixel.
+    Pixel([f32; 2]),
+}
+
+/// A distance, or a pixel `X,Y`.
+pub(crate) fn focus(text: &str) -> Result<Focus, String> {
+    match numbers(text)?[..] {
+        [distance] if distance > 0.0 => Ok(Focus::Distance(distance)),
+        [x, y] if x >= 0.0 && y >= 0.0 => Ok(Focus::Pixel([x, y])),
+        _ => Err("expected a distance above 0, or a pixel, as in 2.5 or 640,400".to_owned()),
     }
 }
 
@@ -217,8 +307,32 @@ mod tests {
             let said = memory_size(bad).expect_err("no size");
             assert!(said.starts_with("expected a number of bytes"), "{bad}: {said}");
         }
-        assert_eq!((exposure("-1"), exposure("0"), exposure("2.0")), (Ok(0.5), Ok(1.0), Ok(4.0)));
+        for (text, factor) in [("-1", 0.5), ("0", 1.0), ("2.0", 4.0)] {
+            assert_eq!(exposure(text), Ok(Exposure::Factor(factor)));
+        }
+        assert_eq!(exposure("auto"), Ok(Exposure::Auto));
         assert!(["", "bright", "nan", "inf", "99"].iter().all(|bad| exposure(bad).is_err()));
+        assert_eq!((noise("0.25"), noise("25%")), (Ok(0.25), Ok(0.25)));
+        assert!(["", "0", "1", "-1%", "100%", "nan", "low"].iter().all(|bad| noise(bad).is_err()));
+        for (text, seconds) in [("30", 30.0), ("0.5s", 0.5), ("2m", 120.0), ("1.5h", 5400.0)] {
+            assert_eq!(duration(text), Ok(Duration::from_secs_f64(seconds)));
+        }
+        for bad in ["", "s", "0", "-1s", "nan", "inf", "1e300h", "1d", "soon"] {
+            assert!(duration(bad).is_err(), "{bad}");
+        }
+        assert_eq!(focus("2.5"), Ok(Focus::Distance(2.5)));
+        assert_eq!(focus("640,0"), Ok(Focus::Pixel([640.0, 0.0])));
+        assert!(["", "0", "-1", "1,-1", "1,2,3", "near"].iter().all(|bad| focus(bad).is_err()));
+        assert_eq!(pixel_filter("box"), Ok(PixelFilter::Box));
+        assert!(
+            pixel_filter("gauss").is_err_and(|said| said.ends_with("tent, box, blackman-harris"))
+        );
+        assert_eq!(aovs("ids, depth,ids"), Ok(Aovs(vec![Aov::Ids, Aov::Depth])));
+        assert_eq!(aovs("all"), Ok(Aovs(Aov::ALL.to_vec())));
+        assert!(aovs("depth,").is_err_and(|said| said.starts_with("`` is no layer: expected")));
+        assert_eq!(tone_map("agx").map(|map| map.name), Ok("agx"));
+        let said = tone_map("filmic").expect_err("no such tone map");
+        assert_eq!(said, "expected one of soft, none, reinhard, aces, agx, neutral");
         assert_eq!(integrator("depth").map(|i| i.name), Ok("depth"));
         for (wrong, right) in [("normal", "normals"), ("witted", "whitted"), ("Depth", "depth")] {
             let said = integrator(wrong).expect_err("no such integrator");

@@ -1,17 +1,22 @@
 //! What is drawn: the scene's light or a heat map of its structure, with or without the structure's bounds.
 
-use std::io::{self, Write};
+use std::io::{self, Seek, Write};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use raywood_render::{
-    BoundsOverlay, HeatMap, HeatQuantity, Image, PreparedScene, Progress, RayCounts, RenderError,
-    RenderOptions, RenderStats, RgbImage, View, bounds_overlay, exposure_for, heat_map, render,
-    write_png,
+    Aov, BoundsOverlay, Contents, Ended, Features, Film, Goal, HeatMap, HeatQuantity, Image,
+    ImageFormat, Layer, LayerSources, PreparedScene, Progress, RayCounts, RenderError,
+    RenderOptions, RenderStats, RgbImage, ToneMap, View, WriteOptions, bounds_overlay, denoise,
+    exposure_for, features, heat_map, key_exposure, noise, primitive_ids, render, render_passes,
 };
 
 use crate::failure::Failure;
-use crate::progress_bar::during_rendering;
+use crate::interrupt::AskOnInterrupt;
+use crate::parse::Exposure;
+use crate::print;
+use crate::progress_bar::{during_passes, during_rendering};
 
 /// What to draw.
 pub(crate) struct Request<'a> {
@@ -25,7 +30,17 @@ pub(crate) struct Request<'a> {
     /// The level of the bounds.
     pub(crate) show_bounds: Option<usize>,
     /// How much of the light is shown; else as much as a path tracer's picture has room for, or all of it.
-    pub(crate) exposure: Option<f32>,
+    pub(crate) exposure: Option<Exposure>,
+    /// How it is shown.
+    pub(crate) tone_map: &'static ToneMap,
+    /// Whether the light is kept as it is, and not shown.
+    pub(crate) keeps_light: bool,
+    /// When the picture is good enough.
+    pub(crate) goal: Goal,
+    /// The layers beside it.
+    pub(crate) aovs: &'a [Aov],
+    /// Whether noise is removed.
+    pub(crate) denoise: bool,
 }
 
 /// A picture, and what a report says of it.
@@ -36,11 +51,22 @@ pub(crate) struct Drawn {
     pub(crate) bounds: Option<Bounds>,
     /// How much of the light is shown.
     pub(crate) exposure: f32,
+    pub(crate) passes: Option<Passes>,
+}
+
+/// What a report says of a picture in passes.
+pub(crate) struct Passes {
+    /// The fewest and the most samples of a pixel, and their mean.
+    pub(crate) samples: (u32, u32),
+    pub(crate) mean_samples: f64,
+    /// The relative error, if it can be estimated.
+    pub(crate) noise: Option<f32>,
+    pub(crate) ended: Ended,
 }
 
 /// Light as it was computed, or what was drawn into.
 enum Picture {
-    Light(Image),
+    Light(Image, Vec<Layer>),
     Drawn(RgbImage),
 }
 
@@ -76,23 +102,24 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
 
     let &Request { prepared, view: View { camera, lights }, options, .. } = request;
     let Some(quantity) = request.heatmap else {
-        let (image, stats) =
-            traced(pool, |progress| render(prepared, camera, lights, options, progress))?;
+        let Light { image, layers, stats, passes } = light(request, pool)?;
         let exposure = match request.exposure {
-            Some(exposure) if options.integrator.shows_light => exposure,
+            _ if request.keeps_light || image.are_numbers() => 1.0,
+            Some(Exposure::Factor(factor)) => factor,
+            Some(Exposure::Auto) => key_exposure(&image),
             None if options.integrator.name == "path" => {
                 let expose =
                     |progress: &_| exposure_for(prepared, camera, lights, options, progress);
                 traced(pool, expose)?
             }
-            _ => 1.0,
+            None => 1.0,
         };
-        let image = image.exposed(exposure);
+        let image = image.exposed(exposure).with_tone_map(request.tone_map);
         let picture = match &overlay {
-            None => Picture::Light(image),
+            None => Picture::Light(image, layers),
             Some(_) => Picture::Drawn(draw_over(image.to_rgb_image())),
         };
-        return Ok(Drawn { picture, render: stats, heat: None, bounds, exposure });
+        return Ok(Drawn { picture, render: stats, heat: None, bounds, exposure, passes });
     };
 
     let started = Instant::now();
@@ -104,7 +131,75 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
     let picture = map.with_legend(&draw_over(map.picture(scale)), scale);
     let heat = Heat::of(&map, scale);
     let picture = Picture::Drawn(picture);
-    Ok(Drawn { picture, render: stats, heat: Some(heat), bounds, exposure: 1.0 })
+    Ok(Drawn { picture, render: stats, heat: Some(heat), bounds, exposure: 1.0, passes: None })
+}
+
+/// The light of a picture: in passes where that is slow or nobody knows how many there will be, and Ctrl-C leaves what there is; else at once.
+fn light(request: &Request<'_>, pool: &ThreadPool) -> Result<Light, Failure> {
+    let &Request { prepared, view: View { camera, lights }, options, goal, aovs, .. } = request;
+    let is_in_passes = options.integrator.name == "path"
+        || goal.is_open()
+        || aovs.iter().any(|aov| aov.is_of_film());
+    if !is_in_passes {
+        let draw = |progress: &_| render(prepared, camera, lights, options, progress);
+        let (image, stats) = traced(pool, draw)?;
+        let layers = beside(request, None, pool)?.1;
+        return Ok(Light { image, layers, stats, passes: None });
+    }
+
+    let progress = Arc::new(Progress::new());
+    let asked = Arc::clone(&progress);
+    let guard = AskOnInterrupt::new(move || asked.cancel());
+    let mut film = Film::new(options.width, options.height).map_err(failure)?;
+    let (stats, ended) = during_passes(&progress, || {
+        let film = &mut film;
+        pool.install(|| render_passes(prepared, camera, lights, options, &goal, film, &progress))
+    })
+    .map_err(failure)?;
+    drop(guard);
+    let noise = noise(&film);
+    let passes = Passes {
+        samples: film.samples(),
+        mean_samples: film.mean_samples(),
+        noise: noise.is_finite().then_some(noise),
+        ended,
+    };
+    let (features, layers) = beside(request, Some(&film), pool)?;
+    let mut image = film.image(options.integrator.shows_light);
+    if let Some(features) = features.filter(|_| request.denoise) {
+        match pool.install(|| denoise(&film, &features)) {
+            Some(denoised) => image = denoised,
+            None => print::warning("too few passes to know the noise, none is removed"),
+        }
+    }
+    Ok(Light { image, layers, stats, passes: Some(passes) })
+}
+
+/// What was computed.
+struct Light {
+    image: Image,
+    layers: Vec<Layer>,
+    stats: RenderStats,
+    passes: Option<Passes>,
+}
+
+/// What is wanted beside the light: features if noise is to be removed, and layers. From the rays that all pixels of the picture have.
+fn beside(
+    request: &Request<'_>,
+    film: Option<&Film>,
+    pool: &ThreadPool,
+) -> Result<(Option<Features>, Vec<Layer>), Failure> {
+    let &Request { prepared, view: View { camera, .. }, options, aovs, .. } = request;
+    let samples = film.map_or(options.samples, |film| film.samples().0);
+    let needs_features = request.denoise || aovs.iter().any(|aov| aov.is_feature());
+    let find = |progress: &_| features(prepared, camera, options, samples, progress);
+    let found = needs_features.then(|| traced(pool, find)).transpose()?;
+    let number = |progress: &_| primitive_ids(prepared, camera, options, progress);
+    let needs_ids = aovs.contains(&Aov::Ids);
+    let ids = needs_ids.then(|| traced(pool, number)).transpose()?;
+    let sources = LayerSources { features: found.as_ref(), ids: ids.as_deref(), film };
+    let layers = aovs.iter().flat_map(|aov| aov.layers(&sources)).collect();
+    Ok((found, layers))
 }
 
 fn draw_bounds(
@@ -126,18 +221,43 @@ fn traced<T: Send>(
     work: impl FnOnce(&Progress) -> Result<T, RenderError> + Send,
 ) -> Result<T, Failure> {
     let progress = Progress::new();
-    during_rendering(&progress, || pool.install(|| work(&progress))).map_err(|error| match error {
+    during_rendering(&progress, || pool.install(|| work(&progress))).map_err(failure)
+}
+
+/// Why there is no picture.
+fn failure(error: RenderError) -> Failure {
+    match error {
         RenderError::OutOfMemory { .. } => Failure::while_running(error),
+        RenderError::Cancelled => {
+            Failure::Interrupted("before there was a picture; nothing is written".to_owned())
+        }
         error => Failure::bad_input(error),
-    })
+    }
 }
 
 impl Drawn {
-    /// Writes the picture as PNG.
-    pub(crate) fn write(&self, writer: impl Write) -> io::Result<()> {
-        match &self.picture {
-            Picture::Light(image) => write_png(image, writer),
-            Picture::Drawn(image) => image.write_png(writer),
+    /// Writes the picture.
+    pub(crate) fn write(
+        &self,
+        format: &ImageFormat,
+        options: &WriteOptions,
+        writer: impl Write + Seek,
+    ) -> io::Result<()> {
+        let contents = match &self.picture {
+            Picture::Light(image, layers) => Contents::Computed(image, layers),
+            Picture::Drawn(image) => Contents::Drawn(image),
+        };
+        format.write(contents, options, writer)
+    }
+
+    /// How many samples a pixel has, in words; `asked` is how many it was to have.
+    pub(crate) fn samples(&self, asked: u32) -> String {
+        match &self.passes {
+            None => asked.to_string(),
+            Some(Passes { samples: (fewest, most), .. }) if fewest == most => most.to_string(),
+            Some(Passes { samples: (fewest, most), mean_samples, .. }) => {
+                format!("{fewest} to {most} (on average {mean_samples:.1})")
+            }
         }
     }
 }

@@ -27,8 +27,9 @@ pub(crate) fn warning(text: impl Display) {
 }
 
 /// Says why the command ends.
-pub(crate) fn error(text: impl Display) {
-    say("error", &text);
+pub(crate) fn failure(failure: &Failure) {
+    let kind = if matches!(failure, Failure::Interrupted(_)) { "stopped" } else { "error" };
+    say(kind, failure);
 }
 
 /// Prints a line on standard error; if that is closed there is nobody to tell.

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use raywood_render::Progress;
+use raywood_render::{Progress, Standing};
 
 /// How often the line is drawn anew.
 const INTERVAL: Duration = Duration::from_millis(100);
@@ -28,20 +28,35 @@ pub(crate) fn during_steps<T>(steps: impl FnOnce(&mut (dyn FnMut(&str) + Send)) 
     result
 }
 
-/// In how many steps the bar of a build grows.
-const BUILD_STEPS: u64 = 1000;
+/// In how many steps bars grow whose length is a share.
+const STEPS: u64 = 1000;
 
 /// Runs a build while a bar shows how far it is, which the build tells.
 pub(crate) fn during_build<T>(
     build: impl FnOnce(&(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> T,
 ) -> T {
-    let bar = new_line("building [{wide_bar}] {percent}% {eta} left", Some(BUILD_STEPS));
+    let bar = new_line("building [{wide_bar}] {percent}% {eta} left", Some(STEPS));
     let result = build(&|done| {
-        bar.set_position((done * BUILD_STEPS as f64) as u64);
+        bar.set_position((done * STEPS as f64) as u64);
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();
     result
+}
+
+/// Runs a rendering in passes while a bar shows how far it is, how many samples a pixel has and how noisy the picture is.
+pub(crate) fn during_passes<T: Send>(
+    progress: &Progress,
+    rendering: impl FnOnce() -> T + Send,
+) -> T {
+    let template = "rendering [{wide_bar}] {percent}% {msg}{eta} left";
+    watched(template, rendering, |bar| {
+        let Standing { samples, noise, fraction } = progress.standing();
+        bar.set_length(STEPS);
+        bar.set_position((fraction * STEPS as f64) as u64);
+        let noise = noise.map_or(String::new(), |noise| format!("noise {:.1}%, ", 100.0 * noise));
+        bar.set_message(format!("{samples} samples, {noise}"));
+    })
 }
 
 /// Runs a rendering while a bar shows how far it is.
@@ -49,15 +64,26 @@ pub(crate) fn during_rendering<T: Send>(
     progress: &Progress,
     rendering: impl FnOnce() -> T + Send,
 ) -> T {
+    watched("rendering [{wide_bar}] {percent}% {eta} left", rendering, |bar| {
+        bar.set_length(progress.pixels_total().max(1));
+        bar.set_position(progress.pixels_done());
+    })
+}
+
+/// Runs a rendering while a line is drawn anew again and again.
+fn watched<T: Send>(
+    template: &str,
+    rendering: impl FnOnce() -> T + Send,
+    update: impl Fn(&ProgressBar),
+) -> T {
     if !stderr().is_terminal() {
         return rendering();
     }
-    let bar = new_line("rendering [{wide_bar}] {percent}% {eta} left", Some(0));
+    let bar = new_line(template, Some(0));
     thread::scope(|scope| {
         let rendering = scope.spawn(rendering);
         while !rendering.is_finished() {
-            bar.set_length(progress.pixels_total().max(1));
-            bar.set_position(progress.pixels_done());
+            update(&bar);
             thread::sleep(INTERVAL);
         }
         bar.finish_and_clear();

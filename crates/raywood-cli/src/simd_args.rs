@@ -9,6 +9,7 @@ use crate::parse::simd_level;
 
 /// The option of the vector instructions.
 #[derive(clap::Args)]
+#[command(next_help_heading = "Acceleration structure")]
 pub(crate) struct SimdArgs {
     /// Best of portable, avx2, avx512 to use
     ///

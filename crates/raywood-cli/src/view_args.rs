@@ -9,6 +9,7 @@ use crate::parse::{Point, PointLight, field_of_view};
 
 /// The options of a view.
 #[derive(clap::Args)]
+#[command(next_help_heading = "View and light")]
 pub(crate) struct ViewArgs {
     /// Where the eye is
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]

@@ -219,7 +219,7 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         ("render empty.ply", "empty.ply: is empty"),
         ("render model.xyz", ".obj"),
         ("render directory.obj", "directory"),
-        ("render triangle.obj -o picture.jpg", ".png"),
+        ("render triangle.obj -o picture.gif", ".png"),
         ("render triangle.obj -o directory.png", "directory"),
         ("render triangle.obj -o nowhere/picture.png", "there is no folder nowhere"),
         ("render triangle.obj --size 0x5", "0x5"),

@@ -1,28 +1,33 @@
 //! `raywood render`: a scene in, a picture out.
 
+mod image_args;
+mod lens_args;
 mod report;
+mod sampling_args;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use raywood::StructureKind;
-use raywood_render::{HeatQuantity, INTEGRATORS, Integrator, RenderOptions};
+use raywood_render::{Ended, HeatQuantity, INTEGRATORS, Integrator, RenderOptions};
 use raywood_scene::{Environment, load_environment};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
 use crate::failure::Failure;
-use crate::output_file::OutputFile;
-use crate::parse::{Size, above_zero, exposure, heat_quantity, integrator, structure_kind};
+use crate::parse::{Size, above_zero, heat_quantity, integrator, structure_kind};
 use crate::picture::{self, Request};
 use crate::print;
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
 use crate::simd_args::SimdArgs;
 use crate::view_args::ViewArgs;
+use image_args::{ImageArgs, ImageFile, Made};
+use lens_args::LensArgs;
 use report::Report;
+use sampling_args::SamplingArgs;
 
-/// Render a model file or a built-in scene to a PNG picture.
+/// Render a model file or a built-in scene to a picture.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
@@ -30,16 +35,6 @@ pub(crate) struct Args {
     /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
-
-    /// The picture [default: render.png]
-    #[arg(
-        short,
-        long,
-        value_name = "FILE.png",
-        default_value = "render.png",
-        hide_default_value = true
-    )]
-    output: PathBuf,
 
     /// Width and height in pixels
     #[arg(short, long, value_name = "WxH", default_value = "1280x800")]
@@ -56,10 +51,6 @@ pub(crate) struct Args {
     )]
     integrator: &'static Integrator,
 
-    /// Rays per pixel, for smooth edges
-    #[arg(short = 'n', long, value_name = "N", default_value_t = 4)]
-    samples: u32,
-
     /// Most reflections and refractions
     ///
     /// How often light may be mirrored or refracted on its way to the eye.
@@ -70,56 +61,11 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    #[command(flatten)]
-    build: BuildArgs,
-
-    #[command(flatten)]
-    simd: SimdArgs,
-
-    #[command(flatten)]
-    view: ViewArgs,
-
-    /// Panorama around the scene (.hdr), or none
-    ///
-    /// A Radiance picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it.
-    #[arg(long, value_name = "FILE.hdr|none", hide_short_help = true)]
-    environment: Option<PathBuf>,
-
-    /// How bright, in stops; each doubles the light
-    ///
-    /// Else 0, but for integrator `path`, where the picture is darkened until nine tenths of it are not too bright.
-    #[arg(long, value_name = "STOPS", value_parser = exposure, allow_hyphen_values = true, hide_short_help = true)]
-    exposure: Option<f32>,
-
     /// Transparent things cast black shadows
     ///
     /// Otherwise light passes straight through them to what lies behind, weakened and coloured by what they absorb.
     #[arg(long, hide_short_help = true)]
     opaque_shadows: bool,
-
-    /// Acceleration structure to trace with
-    ///
-    /// The picture is the same with each but for last digits, which show in single pixels; times and memory differ. A wrong name is answered with those that exist.
-    #[arg(long, value_name = "NAME", value_parser = structure_kind)]
-    structure: Option<StructureKind>,
-
-    /// Show the structure's work for each pixel
-    ///
-    /// Instead of the scene: `nodes` (nodes or cells entered), `boxes` (box tests), `primitives` (primitive tests) or `tests` (both), the mean over the pixel's rays from the eye. A strip with a legend is added below the picture.
-    #[arg(long, value_name = "QUANTITY", value_parser = heat_quantity)]
-    heatmap: Option<HeatQuantity>,
-
-    /// Where the scale of the heat map ends
-    ///
-    /// To compare several maps. Else it ends where 99.5% of the pixels lie below, rounded up; the legend then has `>=` before its last number if some lie above.
-    #[arg(long, value_name = "N", value_parser = above_zero, requires = "heatmap", hide_short_help = true)]
-    heatmap_max: Option<f32>,
-
-    /// Draw the structure's boxes of a level
-    ///
-    /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
-    #[arg(long, value_name = "LEVEL", hide_short_help = true)]
-    show_bounds: Option<usize>,
 
     /// Refuse what is otherwise mended
     ///
@@ -130,7 +76,63 @@ pub(crate) struct Args {
     /// Print the statistics as JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    image: ImageArgs,
+
+    #[command(flatten)]
+    sampling: SamplingArgs,
+
+    #[command(flatten)]
+    view: ViewArgs,
+
+    /// Panorama around the scene (.hdr, .exr), or none
+    ///
+    /// A Radiance or OpenEXR picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it.
+    #[arg(help_heading = "View and light", long, value_name = "FILE|none", hide_short_help = true)]
+    environment: Option<PathBuf>,
+
+    #[command(flatten)]
+    lens: LensArgs,
+
+    /// Acceleration structure to trace with
+    ///
+    /// The picture is the same with each but for last digits, which show in single pixels; times and memory differ. A wrong name is answered with those that exist.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "NAME", value_parser = structure_kind)]
+    structure: Option<StructureKind>,
+
+    #[command(flatten)]
+    build: BuildArgs,
+
+    #[command(flatten)]
+    simd: SimdArgs,
+
+    /// Show the structure's work for each pixel
+    ///
+    /// Instead of the scene: `nodes` (nodes or cells entered), `boxes` (box tests), `primitives` (primitive tests) or `tests` (both), the mean over the pixel's rays from the eye. A strip with a legend is added below the picture.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "QUANTITY", value_parser = heat_quantity)]
+    heatmap: Option<HeatQuantity>,
+
+    /// Where the scale of the heat map ends
+    ///
+    /// To compare several maps. Else it ends where 99.5% of the pixels lie below, rounded up; the legend then has `>=` before its last number if some lie above.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "N", value_parser = above_zero, requires = "heatmap", hide_short_help = true)]
+    heatmap_max: Option<f32>,
+
+    /// Draw the structure's boxes of a level
+    ///
+    /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
+    #[arg(
+        help_heading = "Acceleration structure",
+        long,
+        value_name = "LEVEL",
+        hide_short_help = true
+    )]
+    show_bounds: Option<usize>,
 }
+
+/// So many samples, in two passes, tell how noisy a picture is.
+const LEAST_TO_DENOISE: u32 = 8;
 
 /// All integrators, a line each.
 fn integrators_help() -> String {
@@ -142,17 +144,27 @@ fn integrators_help() -> String {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // Say what is wrong with the request before any work is done for it.
     args.simd.activate()?;
-    let options = RenderOptions {
+    let mut options = RenderOptions {
         width: args.size.width,
         height: args.size.height,
-        samples: args.samples,
         max_depth: args.depth,
         opaque_shadows: args.opaque_shadows,
         integrator: args.integrator,
         ..RenderOptions::default()
     };
+    args.sampling.apply(&mut options);
     options.validate().map_err(Failure::bad_input)?;
-    let output = output_file(args)?;
+    let is_drawn = args.heatmap.is_some() || args.show_bounds.is_some();
+    let ImageFile { file, format, options: mut write_options } = args.image.file(is_drawn)?;
+    if args.image.denoise {
+        let is_in_passes = args.integrator.name == "path"
+            || (args.sampling.goal().is_open() && args.integrator.shows_light);
+        if !is_in_passes || is_drawn || options.samples < LEAST_TO_DENOISE {
+            return Err(Failure::BadInput(format!(
+                "--denoise: expected integrator path, or light with --noise or --time, {LEAST_TO_DENOISE} samples per pixel or more, and no drawing"
+            )));
+        }
+    }
     let environment = args.environment.as_deref().map(environment).transpose()?;
 
     let pool = thread_pool(args.threads.map(usize::from))?;
@@ -179,6 +191,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let choose = || args.view.view(&prepared, aspect);
     let view = &during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
+    options.lens = args.lens.lens(&prepared, &view.camera, args.size)?;
+    options.validate().map_err(Failure::bad_input)?;
     let request = Request {
         prepared: &prepared,
         view,
@@ -186,17 +200,37 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         heatmap: args.heatmap,
         heatmap_max: args.heatmap_max,
         show_bounds: args.show_bounds,
-        exposure: args.exposure,
+        exposure: args.image.exposure,
+        tone_map: args.image.tone_map(),
+        keeps_light: format.holds_light,
+        goal: args.sampling.goal(),
+        aovs: args.image.aovs(),
+        denoise: args.image.denoise,
     };
     let drawn = picture::draw(&request, &pool)?;
 
     let started = Instant::now();
-    output.write(|writer| drawn.write(writer))?;
+    let samples = drawn.samples(options.samples);
+    let is_shown = !format.holds_light && !is_drawn && options.integrator.shows_light;
+    write_options.metadata = args.image.metadata(&Made {
+        options: &options,
+        samples: &samples,
+        exposure: is_shown.then_some(drawn.exposure),
+        seconds: drawn.render.elapsed.as_secs_f64(),
+        threads: drawn.render.threads,
+    });
+    file.write_with(|writer| {
+        drawn.write(format, &write_options, writer).map_err(|error| file.cannot_write(&error))
+    })?;
     let write = started.elapsed();
+    let is_cut_short = drawn.passes.as_ref().is_some_and(|passes| passes.ended == Ended::Cancelled);
 
     let structure = prepared.stats();
     let report = Report {
         args,
+        options: &options,
+        samples: &samples,
+        passes: drawn.passes,
         scene: &scene,
         kind,
         is_saved: args.build.wanted(tree.as_ref(), kind).is_some(),
@@ -210,7 +244,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         exposure: drawn.exposure,
         write,
     };
-    if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }
+    if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }?;
+    if is_cut_short {
+        return Err(Failure::Interrupted(format!(
+            "after {samples} of {} samples per pixel; {} is what there was",
+            options.samples,
+            args.image.output.display()
+        )));
+    }
+    Ok(())
 }
 
 /// The panorama of a file, or a black one.
@@ -219,15 +261,4 @@ fn environment(path: &Path) -> Result<Environment, Failure> {
         Some("none") => Ok(Environment::black()),
         _ => load_environment(path).map_err(Failure::bad_input),
     }
-}
-
-/// The picture's file, known to be writable.
-fn output_file(args: &Args) -> Result<OutputFile, Failure> {
-    let path = &args.output;
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        let message =
-            format!("{}: pictures are written as PNG: the name must end in .png", path.display());
-        return Err(Failure::BadInput(message));
-    }
-    OutputFile::new(path)
 }

@@ -3,19 +3,23 @@
 use std::time::Duration;
 
 use raywood::{StructureKind, StructureStats};
-use raywood_render::RenderStats;
+use raywood_render::{Ended, RenderOptions, RenderStats};
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
 use super::Args;
 use crate::exporters;
 use crate::parse::Size;
-use crate::picture::{Bounds, Heat};
+use crate::picture::{Bounds, Heat, Passes};
 use crate::print::{thousands, threads};
 
 /// What was done and how long it took.
 pub(super) struct Report<'a> {
     pub(super) args: &'a Args,
+    pub(super) options: &'a RenderOptions,
+    /// How many samples a pixel has.
+    pub(super) samples: &'a str,
+    pub(super) passes: Option<Passes>,
     pub(super) scene: &'a Scene,
     pub(super) kind: StructureKind,
     /// Whether the structure was saved with the scene.
@@ -38,7 +42,7 @@ impl Report<'_> {
         let Self { load, build, view, render, heat, bounds, write, .. } = self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
-        let mut text = format!("wrote {}: {}\n", args.output.display(), self.what());
+        let mut text = format!("wrote {}: {}\n", args.image.output.display(), self.what());
         let mut line = |name: &str, value: String| text += &format!("  {name:<8}{value}\n");
 
         let spheres = match scene.spheres.as_slice().len() {
@@ -77,6 +81,13 @@ impl Report<'_> {
                 threads(render.threads)
             ),
         );
+        if let Some(Passes { noise: Some(noise), .. }) = &self.passes {
+            line("noise", format!("{:8.2} %", 100.0 * noise));
+        }
+        if let Some(lens) = self.options.lens {
+            let (width, focus) = (2.0 * lens.radius, lens.focus);
+            line("lens", format!("{width} wide, in focus at {focus}"));
+        }
         if let Some(Bounds { level, boxes, time }) = bounds {
             let boxes = thousands(*boxes as u64);
             line("bounds", format!("{}   {boxes} boxes of level {level}", seconds(time)));
@@ -105,8 +116,8 @@ impl Report<'_> {
 
     /// The picture in a few words.
     fn what(&self) -> String {
-        let Args { scene, size: Size { width, height }, samples, .. } = self.args;
-        format!("{scene} at {width}x{height}, {samples} samples per pixel")
+        let Args { scene, size: Size { width, height }, .. } = self.args;
+        format!("{scene} at {width}x{height}, {} samples per pixel", self.samples)
     }
 
     /// For programs.
@@ -116,12 +127,28 @@ impl Report<'_> {
         let rays = render.rays;
         json!({
             "scene": args.scene,
-            "output": args.output.display().to_string(),
+            "output": args.image.output.display().to_string(),
             "width": args.size.width,
             "height": args.size.height,
             "integrator": args.integrator.name,
             "exposure": self.exposure,
-            "samples": args.samples,
+            "samples": self.options.samples,
+            "seed": self.options.seed,
+            "passes": self.passes.as_ref().map(|passes| json!({
+                "fewest_samples": passes.samples.0,
+                "most_samples": passes.samples.1,
+                "mean_samples": passes.mean_samples,
+                "noise": passes.noise,
+                "ended": match passes.ended {
+                    Ended::Samples => "samples",
+                    Ended::Noise => "noise",
+                    Ended::Time => "time",
+                    Ended::Cancelled => "cancelled",
+                },
+            })),
+            "lens": self.options.lens.map(|lens| json!({
+                "radius": lens.radius, "focus": lens.focus,
+            })),
             "depth": args.depth,
             "threads": render.threads,
             "triangles": scene.mesh.triangles.triangles().len(),
