@@ -70,6 +70,10 @@ impl Ray {
             && self.t_min < self.t_max
     }
 
+    /// No ray: not valid.
+    pub(crate) const NONE: Self =
+        Self { origin: Vec3::ZERO, t_min: f32::NAN, direction: Vec3::ZERO, t_max: f32::NAN };
+
     /// Directions whose largest coordinate is less than this count as zero. Coordinates whose reciprocal overflows (below 3e-39) are then
     /// too small beside the largest to matter.
     pub const SHORTEST_DIRECTION: f32 = 1e-30;

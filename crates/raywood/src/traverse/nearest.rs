@@ -24,6 +24,7 @@ pub(crate) fn blocks<G: Geometry + ?Sized>(
 }
 
 /// The closest hit so far: the least distance, and of equal ones the lowest primitive number.
+#[derive(Clone, Copy)]
 pub(crate) struct Nearest {
     best: Option<Hit>,
     t_max: f32,

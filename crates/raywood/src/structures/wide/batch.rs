@@ -6,14 +6,12 @@
 
 use super::flight::Flight;
 use super::node::Reference;
+use super::ray_search::{InSingle, RaySearch};
 use super::sink::Sink;
 use super::source::Source;
-use super::step::{any_blocks, leaf_hits, take_closest};
 use super::{WideBvh, packet};
-use crate::Geometry;
-use crate::geometry::BlockHits;
 use crate::simd::{Kernel, Simd, dispatch_on};
-use crate::traverse::nearest::Nearest;
+use crate::{Geometry, Hit, Ray};
 
 /// How many rays are in flight.
 const RAYS: usize = 64;
@@ -44,8 +42,10 @@ impl<R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, R, H, FAST> {
         for &number in &rest {
             hits.set(number, None);
         }
-        let finish = |number: usize, nearest: Nearest| hits.set(number, nearest.into_hit());
-        let wave = Wave::<R, _, false, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let finish = |number: usize, found: Found<Hit>| hits.set(number, found.hit);
+        let rest = valid(&rest, &rays);
+        let wave =
+            Wave::<InSingle<FAST>, _, _, false> { tree, scene: geometry, rays: rest, finish };
         let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
             hits.set(number, tree.closest_hit(geometry, &rays.ray(number)));
@@ -85,8 +85,9 @@ impl<R: Source, const FAST: bool> Kernel for Any<'_, R, FAST> {
         for &number in &rest {
             occluded[number] = false;
         }
-        let finish = |number: usize, nearest: Nearest| occluded[number] = nearest.is_blocked();
-        let wave = Wave::<R, _, true, FAST> { tree, geometry, rays, numbers: &rest, finish };
+        let finish = |number: usize, found: Found<Hit>| occluded[number] = found.is_blocked;
+        let rest = valid(&rest, &rays);
+        let wave = Wave::<InSingle<FAST>, _, _, true> { tree, scene: geometry, rays: rest, finish };
         let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
             occluded[number] = tree.any_hit(geometry, &rays.ray(number));
@@ -94,41 +95,55 @@ impl<R: Source, const FAST: bool> Kernel for Any<'_, R, FAST> {
     }
 }
 
+/// The valid ones of the rays of some numbers, with these.
+#[inline(always)]
+fn valid<R: Source>(numbers: &[usize], rays: &R) -> impl Iterator<Item = (usize, Ray)> {
+    let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
+    rays.filter(|(_, ray)| ray.is_valid())
+}
+
 /// Where there is no ray in flight: neither a node nor a leaf, nor the end of a ray's way.
 const IDLE: u32 = Reference::NOTHING.0 - 2;
 
-/// Traces all valid ones of the given rays and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that
+/// What a ray found: with `ANY` whether something blocks it, else the closest hit.
+pub(super) struct Found<H> {
+    pub(super) hit: Option<H>,
+    pub(super) is_blocked: bool,
+}
+
+/// Traces rays, given with their numbers, and tells `finish` what each found. With `ANY` a ray ends with its first hit. Returns the numbers of the rays that
 /// found no room for their stacks and must be traced otherwise.
 ///
 /// A function of its own: together with the packets, its loops would be short of registers.
-struct Wave<'a, R, F, const ANY: bool, const FAST: bool> {
-    tree: &'a WideBvh,
-    geometry: &'a dyn Geometry,
-    rays: R,
-    numbers: &'a [usize],
-    finish: F,
+pub(super) struct Wave<'a, Q: RaySearch, I, F, const ANY: bool> {
+    pub(super) tree: &'a WideBvh,
+    pub(super) scene: Q::Scene<'a>,
+    pub(super) rays: I,
+    pub(super) finish: F,
 }
 
-impl<R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Kernel
-    for Wave<'_, R, F, ANY, FAST>
+impl<Q, I, F, const ANY: bool> Kernel for Wave<'_, Q, I, F, ANY>
+where
+    Q: RaySearch,
+    I: Iterator<Item = (usize, Q::Ray)>,
+    F: FnMut(usize, Found<Q::Hit>),
 {
     type Output = Vec<usize>;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Vec<usize> {
-        let Self { tree, geometry, rays, numbers, mut finish } = self;
-        let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
-        let mut waiting = rays.filter(|(_, ray)| ray.is_valid());
-        let mut flights = Vec::with_capacity(RAYS.min(numbers.len()));
+        let Self { tree, scene, rays: mut waiting, mut finish } = self;
+        let most = waiting.size_hint().1.unwrap_or(RAYS);
+        let mut flights = Vec::with_capacity(RAYS.min(most));
         let mut currents = [IDLE; RAYS];
         for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
             *current = tree.root.0;
-            flights.push(Flight::new(&ray, number, tree));
+            flights.push(Flight::new(Q::new(scene, &ray), number, tree));
         }
         let flights = &mut flights[..];
         let mut spilled = Vec::new();
         let mut lists = [[0; RAYS + 16]; 3];
-        let mut hits = [const { (0, BlockHits::NONE) }; RAYS + 1];
+        let mut hits = [const { (0, Q::NO_HITS) }; RAYS + 1];
         loop {
             // Find out which rays do what next: all sixteen places at a time, without a branch.
             let counts = simd.partition(&currents, IDLE, Reference::NOTHING.0, &mut lists);
@@ -143,11 +158,15 @@ impl<R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Ker
             for &place in done {
                 let place = place as usize;
                 let flight = &mut flights[place];
-                let ended = std::mem::replace(&mut flight.nearest, Nearest::new(&flight.ray));
-                finish(flight.number, ended);
+                let search = &flight.search;
+                let found = match ANY {
+                    true => Found { hit: None, is_blocked: search.is_blocked() },
+                    false => Found { hit: search.hit(scene), is_blocked: false },
+                };
+                finish(flight.number, found);
                 currents[place] = IDLE;
                 if let Some((number, ray)) = waiting.next() {
-                    flight.begin(&ray, number, tree);
+                    flight.begin(Q::new(scene, &ray), number, tree);
                     currents[place] = tree.root.0;
                 }
             }
@@ -165,28 +184,35 @@ impl<R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Ker
                 currents[place] = next.0;
             }
 
-            // Test all leaves, and then look closer where something may be hit.
+            // Test all leaves, and then look closer where something may be hit: in double precision at what lies elsewhere in memory.
             let mut count = 0;
             for &place in leaves {
                 let place = place as usize;
-                let flight = &mut flights[place];
                 let leaf = Reference(currents[place]);
-                let found =
-                    leaf_hits::<S, FAST>(simd, tree, leaf, &flight.ray, flight.nearest.t_max());
-                let some = found.hit | found.doubtful != 0;
+                let found = flights[place].search.test_leaf(simd, tree, leaf);
+                let some = Q::may_hit(&found);
                 hits[count] = (place, found);
                 count += usize::from(some);
+            }
+            if Q::IS_ROUNDED {
+                for (place, found) in &hits[..count] {
+                    let leaf = Reference(currents[*place]);
+                    flights[*place].search.prefetch::<false>(tree, scene, leaf, found);
+                }
+                for (place, found) in &hits[..count] {
+                    let leaf = Reference(currents[*place]);
+                    flights[*place].search.prefetch::<true>(tree, scene, leaf, found);
+                }
             }
             for (place, found) in &hits[..count] {
                 let flight = &mut flights[*place];
                 let leaf = Reference(currents[*place]);
-                let Flight { ray, nearest, .. } = &mut *flight;
                 if ANY {
-                    if any_blocks::<S, FAST>(simd, tree, geometry, leaf, found, ray) {
-                        nearest.block();
+                    if flight.search.is_blocked_by(simd, tree, scene, leaf, found) {
+                        flight.search.block();
                         flight.end();
                     }
-                } else if take_closest::<S, FAST>(simd, tree, geometry, leaf, found, ray, nearest) {
+                } else if flight.search.take_closest(simd, tree, scene, leaf, found) {
                     flight.cull(simd);
                 }
             }
@@ -200,7 +226,7 @@ impl<R: Source, F: FnMut(usize, Nearest), const ANY: bool, const FAST: bool> Ker
 
 /// Takes the next node or leaf from the ray's stack and asks for its memory.
 #[inline(always)]
-fn next<S: Simd>(simd: S, tree: &WideBvh, flight: &mut Flight) -> u32 {
+fn next<S: Simd, Q: RaySearch>(simd: S, tree: &WideBvh, flight: &mut Flight<Q>) -> u32 {
     let reference = flight.pop();
     simd.prefetch(tree.address(reference));
     reference.0

@@ -2,10 +2,9 @@
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH, WideNode};
+use super::ray_search::{RaySearch, slabs};
 use super::slabs::Slabs;
 use crate::simd::Simd;
-use crate::traverse::nearest::Nearest;
-use crate::{PreparedRay, Ray};
 
 /// How many items a stack has room for: enough for all but the deepest trees. A power of two; little in tests, so that
 /// they run out of it.
@@ -13,30 +12,27 @@ const CAPACITY: usize = if cfg!(test) { 32 } else { 128 };
 
 /// A ray in flight.
 #[repr(C, align(64))]
-pub(super) struct Flight {
+pub(super) struct Flight<Q> {
     slabs: Slabs,
-    pub(super) nearest: Nearest,
     /// How many items are on the stack.
     top: usize,
     /// Its place among all rays.
     pub(super) number: usize,
-    pub(super) ray: PreparedRay,
+    pub(super) search: Q,
     /// Where the items begin, as [`Simd::push_sorted`] keeps it.
     keys: [f32; CAPACITY],
     /// Nodes and leaves yet to be visited. Below all others lies the end, nearer than any limit.
     items: [u32; CAPACITY],
 }
 
-impl Flight {
-    /// A ray at its beginning, which must be valid.
-    pub(super) fn new(ray: &Ray, number: usize, tree: &WideBvh) -> Self {
-        let ray = PreparedRay::of_valid(ray);
+impl<Q: RaySearch> Flight<Q> {
+    /// A ray at its beginning.
+    pub(super) fn new(search: Q, number: usize, tree: &WideBvh) -> Self {
         let mut flight = Self {
-            slabs: tree.slabs(&ray),
-            nearest: Nearest::new(&ray),
+            slabs: slabs(&search, tree),
             top: 1,
             number,
-            ray,
+            search,
             keys: [0.0; CAPACITY],
             items: [0; CAPACITY],
         };
@@ -46,14 +42,16 @@ impl Flight {
 
     /// Another ray in the place of one that has ended.
     #[inline(always)]
-    pub(super) fn begin(&mut self, ray: &Ray, number: usize, tree: &WideBvh) {
-        let ray = PreparedRay::of_valid(ray);
-        self.slabs.replace(&ray, tree.reach);
+    pub(super) fn begin(&mut self, search: Q, number: usize, tree: &WideBvh) {
+        let ray = search.single();
+        self.slabs.replace(ray, tree.reach);
         if tree.parts.exist() {
             self.slabs = self.slabs.among_parts(tree.parts.margin(ray.origin));
         }
-        self.nearest = Nearest::new(&ray);
-        self.ray = ray;
+        if Q::IS_ROUNDED {
+            self.slabs = self.slabs.around(search.displacement());
+        }
+        self.search = search;
         self.number = number;
         self.top = 1;
     }
@@ -71,7 +69,7 @@ impl Flight {
         simd: S,
         node: &WideNode,
     ) -> Reference {
-        let (met, near) = self.slabs.children_met(simd, node, self.nearest.t_max());
+        let (met, near) = self.slabs.children_met(simd, node, self.search.t_max());
         let top = self.top;
         let (count, last) = if ANY {
             simd.push_chosen(met, &node.children, &mut self.items, top)
@@ -99,7 +97,7 @@ impl Flight {
     /// Takes from the stack what begins beyond the closest hit.
     #[inline(always)]
     pub(super) fn cull<S: Simd>(&mut self, simd: S) {
-        let end = self.slabs.end_of_keys(self.nearest.t_max());
+        let end = self.slabs.end_of_keys(self.search.t_max());
         self.top = simd.retain(&mut self.keys, &mut self.items, self.top, end);
     }
 }

@@ -21,6 +21,7 @@ mod packet;
 pub(crate) mod pairs;
 pub(crate) mod parts;
 mod pruned;
+mod ray_search;
 mod refit;
 mod repair;
 mod saved;

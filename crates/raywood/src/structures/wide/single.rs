@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
-use super::step::{any_blocks, leaf_hits, take_closest};
+use super::ray_search::{InSingle, RaySearch, slabs};
 use crate::simd::{Kernel, Simd};
 use crate::traverse::nearest::Nearest;
 use crate::{Geometry, Hit, PreparedRay, Probe, Ray};
@@ -22,7 +22,9 @@ impl<P: Probe, const FAST: bool> Kernel for Closest<'_, P, FAST> {
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, probe } = self;
         let ray = PreparedRay::new(ray)?;
-        closest::<S, P, FAST>(simd, tree, geometry, &ray, Nearest::new(&ray), probe)
+        let mut search = InSingle::<FAST>::of(ray, Nearest::new(&ray));
+        closest(simd, tree, geometry, &mut search, probe);
+        search.hit(geometry)
     }
 }
 
@@ -41,43 +43,43 @@ impl<const FAST: bool> Kernel for ClosestWithin<'_, FAST> {
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, limit } = self;
         let ray = PreparedRay::new(ray)?;
-        let nearest = Nearest::within(&ray, limit);
-        closest::<S, (), FAST>(simd, tree, geometry, &ray, nearest, &mut ())
+        let mut search = InSingle::<FAST>::of(ray, Nearest::within(&ray, limit));
+        closest(simd, tree, geometry, &mut search, &mut ());
+        search.hit(geometry)
     }
 }
 
-/// The closest hit of a ray, of which nothing was found yet.
+/// Finds the closest hit of a ray.
 #[inline(always)]
-fn closest<S: Simd, P: Probe, const FAST: bool>(
+pub(super) fn closest<S: Simd, P: Probe, Q: RaySearch>(
     simd: S,
     tree: &WideBvh,
-    geometry: &dyn Geometry,
-    ray: &PreparedRay,
-    mut nearest: Nearest,
+    scene: Q::Scene<'_>,
+    search: &mut Q,
     probe: &mut P,
-) -> Option<Hit> {
-    let slabs = tree.slabs(ray);
+) {
+    let slabs = slabs(search, tree);
     let mut stack = SmallStack::new(tree);
     let (keys, items) = stack.parts();
     let (mut top, mut current) = (1, tree.root);
     loop {
         if current == Reference::NOTHING {
-            return nearest.into_hit();
+            return;
         }
         probe.nodes(1);
         if current.is_leaf() {
             probe.primitives(current.count());
-            let hits = leaf_hits::<S, FAST>(simd, tree, current, ray, nearest.t_max());
-            take_closest::<S, FAST>(simd, tree, geometry, current, &hits, ray, &mut nearest);
+            let hits = search.test_leaf(simd, tree, current);
+            search.take_closest(simd, tree, scene, current, &hits);
         } else {
             let node = tree.node(current);
             probe.boxes(WIDTH);
-            let (met, near) = slabs.children_met(simd, node, nearest.t_max());
+            let (met, near) = slabs.children_met(simd, node, search.t_max());
             top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
         }
 
         // On to the next that begins before the closest hit.
-        let end = slabs.end_of_keys(nearest.t_max());
+        let end = slabs.end_of_keys(search.t_max());
         current = loop {
             top -= 1;
             if keys[top] <= end {
@@ -102,30 +104,43 @@ impl<P: Probe, const FAST: bool> Kernel for Any<'_, P, FAST> {
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { tree, geometry, ray, probe } = self;
         let Some(ray) = PreparedRay::new(ray) else { return false };
-        let slabs = tree.slabs(&ray);
-        let mut stack = SmallStack::new(tree);
-        let (keys, items) = stack.parts();
-        let (mut top, mut current) = (1, tree.root);
-        loop {
-            if current == Reference::NOTHING {
-                return false;
-            }
-            probe.nodes(1);
-            if current.is_leaf() {
-                probe.primitives(current.count());
-                let hits = leaf_hits::<S, FAST>(simd, tree, current, &ray, ray.t_max);
-                if any_blocks::<S, FAST>(simd, tree, geometry, current, &hits, &ray) {
-                    return true;
-                }
-            } else {
-                let node = tree.node(current);
-                probe.boxes(WIDTH);
-                let (met, near) = slabs.children_met(simd, node, ray.t_max);
-                top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
-            }
-            top -= 1;
-            current = Reference(items[top]);
+        let search = InSingle::<FAST>::of(ray, Nearest::new(&ray));
+        is_blocked(simd, tree, geometry, &search, probe)
+    }
+}
+
+/// Whether anything blocks a ray.
+#[inline(always)]
+pub(super) fn is_blocked<S: Simd, P: Probe, Q: RaySearch>(
+    simd: S,
+    tree: &WideBvh,
+    scene: Q::Scene<'_>,
+    search: &Q,
+    probe: &mut P,
+) -> bool {
+    let slabs = slabs(search, tree);
+    let mut stack = SmallStack::new(tree);
+    let (keys, items) = stack.parts();
+    let (mut top, mut current) = (1, tree.root);
+    loop {
+        if current == Reference::NOTHING {
+            return false;
         }
+        probe.nodes(1);
+        if current.is_leaf() {
+            probe.primitives(current.count());
+            let hits = search.test_leaf(simd, tree, current);
+            if search.is_blocked_by(simd, tree, scene, current, &hits) {
+                return true;
+            }
+        } else {
+            let node = tree.node(current);
+            probe.boxes(WIDTH);
+            let (met, near) = slabs.children_met(simd, node, search.t_max());
+            top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
+        }
+        top -= 1;
+        current = Reference(items[top]);
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Rays are made from this 16 at a time, coordinate by coordinate, or one by one where something goes on alone.
 
+use crate::double::{Double3, double};
+use crate::geometry::TriangleBlock;
 use crate::simd::{Simd, as_rows};
 use crate::{Ray, Vec3};
 
@@ -33,6 +35,35 @@ pub(super) trait Source: Copy {
 
     /// Asks for the memory of all rays.
     fn prefetch<S: Simd>(&self, simd: S);
+
+    /// Whether rays and triangles are rounded from double precision, which [decides](Self::settle) where single precision cannot tell.
+    const IS_ROUNDED: bool = false;
+
+    /// How far beside each other a point of a ray and one of a triangle may lie, along each axis, that are the same in truth.
+    #[inline(always)]
+    fn displacement(&self) -> f32 {
+        0.0
+    }
+
+    /// Where a ray starts and where it goes, in truth.
+    #[inline(always)]
+    fn line(&self, number: usize) -> [Double3; 2] {
+        let ray = self.ray(number);
+        [double(ray.origin), double(ray.direction)]
+    }
+
+    /// The corners of the triangle in a lane, in truth.
+    #[inline(always)]
+    fn corners(&self, block: &TriangleBlock, lane: usize) -> [Double3; 3] {
+        let [a, b, c] = block.corners(lane);
+        [double(a), double(b), double(c)]
+    }
+
+    /// Of rounded rays: at which distance a ray hits a triangle, if it does so in truth, and nearer than another one that it certainly hits, or equally near
+    /// with a lower number.
+    fn settle(&self, _number: usize, _primitive: u32, _than: Option<u32>) -> Option<f32> {
+        None
+    }
 }
 
 /// What rays have in common.
@@ -78,13 +109,11 @@ impl Source for &[Ray] {
 
     #[inline(always)]
     fn columns<S: Simd>(&self, simd: S, start: usize) -> [S::F16; 8] {
-        const NO_RAY: Ray =
-            Ray { origin: Vec3::ZERO, t_min: f32::NAN, direction: Vec3::ZERO, t_max: f32::NAN };
         match self.get(start..).and_then(<[Ray]>::first_chunk) {
             Some(rays) => simd.columns(as_rows(rays)),
             None => {
                 let rays = part(self, start, 16);
-                let mut filled = [NO_RAY; 16];
+                let mut filled = [Ray::NONE; 16];
                 filled[..rays.len()].copy_from_slice(rays);
                 simd.columns(as_rows(&filled))
             }

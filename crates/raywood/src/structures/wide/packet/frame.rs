@@ -6,6 +6,14 @@ use crate::build::part_margin::DISTANCE_ERROR;
 use crate::geometry::TriangleBlock;
 use crate::simd::Simd;
 use crate::structures::wide::parts::Parts;
+use crate::structures::wide::source::Source;
+
+/// By how much rays count as missing their common point where they and the triangles are displaced, each corner by itself, so that depths are off by less than what
+/// follows from that.
+const MOVES_PER_DISPLACEMENT: f32 = 4.0;
+
+/// By how much of themselves intervals of depths are lengthened then: more than what two hits must be apart for single precision to tell which is nearer.
+const ROUNDED_SLACK: f32 = 1.0 / (1 << 11) as f32;
 
 /// Where a packet's rays start, or end, and along which axis they run.
 ///
@@ -28,6 +36,8 @@ pub(super) struct Frame {
     pub(super) shear: [f32; 2],
     /// And the largest coordinate that any starts at.
     pub(super) farthest: f32,
+    /// And how far they and the triangles are [displaced](Source::displacement).
+    pub(super) displacement: f32,
 }
 
 impl Frame {
@@ -45,6 +55,7 @@ impl Frame {
             slack: SLACK,
             shear: [0.0; 2],
             farthest: 0.0,
+            displacement: 0.0,
         }
     }
 
@@ -54,6 +65,15 @@ impl Frame {
         if parts.exist() {
             self.margin = parts.margin_at(distance);
             self.slack = DISTANCE_ERROR;
+        }
+    }
+
+    /// Makes it fit for rays and triangles that are rounded from double precision.
+    #[inline(always)]
+    pub(super) fn widen_for_rounding<R: Source>(&mut self, rays: &R) {
+        if R::IS_ROUNDED {
+            self.offset += MOVES_PER_DISPLACEMENT * rays.displacement();
+            self.slack = ROUNDED_SLACK;
         }
     }
 

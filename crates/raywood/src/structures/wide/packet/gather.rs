@@ -149,6 +149,7 @@ impl Packet {
         let from_center = (point - tree.parts.center).abs().max_element();
         let distance = from_center.max(farthest.greatest());
         self.frame.widen_for_parts(&tree.parts, distance);
+        self.frame.widen_for_rounding(rays);
         self.is_bounded = bounded != 0;
         self.start = 1.0 / latest.greatest();
         self.numbers = NUMBERS;

@@ -3,13 +3,13 @@
 use super::kind::Kind;
 use super::leaving::{Leaving, Plane};
 use super::triangles::{GREATEST_VOLUME, Triangles};
-use super::{ALL, GROUP, Packet, Piece, TOLERANCE};
-use crate::PreparedRay;
+use super::{ALL, GROUP, NONE, Packet, Piece, TOLERANCE};
 use crate::simd::{Float, Simd, dispatch_on};
 use crate::structures::wide::node::Reference;
 use crate::structures::wide::source::Source;
 use crate::structures::wide::step;
 use crate::traverse::nearest::hit as hit_one;
+use crate::{PreparedRay, PrimitiveHit};
 
 /// What an edge function's error hardly ever exceeds, as a share of what it may be.
 const LIKELY_ERROR: f32 = 1.0 / 16.0;
@@ -23,10 +23,14 @@ const START_ERROR: f32 = 1.0 / (1 << 22) as f32;
 /// Hits nearer to a ray's start than this share of its distance from the common point are looked for from the start.
 const NEAR: f32 = 1.0 / 512.0;
 
+/// By which share of itself a hit must be nearer than another one for single precision to tell them apart, where rays and triangles are rounded from double: the error of
+/// the other one's depth, which is at most [`TOLERANCE`], and half of that to spare.
+pub(super) const CLOSE: f32 = 1.5 * TOLERANCE;
+
 impl Packet {
     /// Tests a triangle against the rays of a group and takes what is certainly hit. Returns the rays for which that is not certain.
     #[inline(always)]
-    pub(super) fn test<S: Simd, K: Kind, const FAST: bool>(
+    pub(super) fn test<S: Simd, R: Source, K: Kind, const FAST: bool>(
         &mut self,
         simd: S,
         triangles: &Triangles,
@@ -67,11 +71,18 @@ impl Packet {
             self.nearest[group] = nearest.replaced(hit, blocked).to_array();
             return (hit, possible & !certain);
         }
+        // Which of two is nearer in double precision is asked where they are close to each other.
+        let (more, nearer) = if R::IS_ROUNDED {
+            let close = depth * simd.splat16(CLOSE);
+            (more + close, nearest.less(depth - error_of_depth - close))
+        } else {
+            (more, ALL)
+        };
         let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
         let (late, certainly_late) =
             self.behind_start::<S, K>(simd, depth, triangles.tolerances[lane], group);
         let possible = possible & late;
-        let hit = possible & simd.splat16(certainly).less(least) & certainly_late;
+        let hit = possible & simd.splat16(certainly).less(least) & certainly_late & nearer;
         let doubtful = possible & !hit;
 
         self.take(simd, hit, depth, [edge_b, edge_c], group, primitive);
@@ -171,7 +182,8 @@ impl Packet {
                 return;
             }
         }
-        let plane = ((K::ANY || K::LATE) && is_triangle).then(|| Plane::of(block.corners(lane)));
+        let plane = ((K::ANY || K::LATE) && is_triangle)
+            .then(|| Plane::of(piece.rays.corners(block, lane)));
         let plane = match plane {
             Some(plane) if doubtful.count_ones() >= SEVERAL => {
                 let (packet, rays) = (&*self, &piece.rays);
@@ -186,16 +198,21 @@ impl Packet {
                 continue;
             }
             let number = usize::from(self.numbers[group][place]);
-            let ray = piece.rays.ray(number);
-            if plane.as_ref().is_some_and(|plane| plane.is_left_by(&ray)) {
+            let leaves = |plane: &Plane| plane.is_left_by::<R>(piece.rays.line(number));
+            if plane.as_ref().is_some_and(leaves) {
                 continue;
             }
-            let Some(ray) = PreparedRay::new(&ray) else {
-                continue;
-            };
-            let hit = match is_triangle {
-                true => block.intersect_one(&ray, lane),
-                false => hit_one(piece.geometry, &ray, block.primitives[lane]),
+            let hit = if R::IS_ROUNDED {
+                let best = self.primitives[group][place].to_bits();
+                let best = (!K::ANY && best != NONE).then_some(best);
+                let settled = piece.rays.settle(number, block.primitives[lane], best);
+                settled.map(|t| PrimitiveHit { t, u: 0.0, v: 0.0 })
+            } else {
+                let Some(ray) = PreparedRay::new(&piece.rays.ray(number)) else { continue };
+                match is_triangle {
+                    true => block.intersect_one(&ray, lane),
+                    false => hit_one(piece.geometry, &ray, block.primitives[lane]),
+                }
             };
             let Some(hit) = hit else { continue };
             let nearest = &mut self.nearest[group][place];
@@ -212,7 +229,7 @@ impl Packet {
                 // At the origin itself: nothing is nearer, and one over the depth cannot tell how near it is.
                 self.alone[group] |= 1 << place;
                 *nearest = f32::INFINITY;
-            } else if depth > *nearest {
+            } else if R::IS_ROUNDED || depth > *nearest {
                 *nearest = depth;
                 self.primitives[group][place] = f32::from_bits(block.primitives[lane]);
                 self.weights[0][group][place] = hit.u * depth;

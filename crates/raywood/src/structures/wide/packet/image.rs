@@ -182,6 +182,7 @@ impl Packet {
         let farthest = farthest.greatest();
         self.frame.offset = misses.greatest() + roundings * farthest;
         self.frame.widen_for_parts(&tree.parts, from_center + farthest);
+        self.frame.widen_for_rounding(rays);
         self.is_bounded = false;
         self.start = f32::INFINITY;
         self.numbers = NUMBERS;

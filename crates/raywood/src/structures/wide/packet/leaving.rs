@@ -4,45 +4,43 @@
 //! be told apart much better by the ray itself.
 
 use super::{GROUP, Packet};
+use crate::Vec3;
+use crate::double::{Double3, cross, dot, double, sub};
 use crate::simd::{Float, Kernel, Simd};
 use crate::structures::wide::source::Source;
-use crate::{Ray, Vec3};
+use crate::structures::wide::step;
 
 /// The plane of a triangle, in double precision.
 pub(super) struct Plane {
-    normal: [f64; 3],
-    corner: [f64; 3],
+    normal: Double3,
+    corner: Double3,
     /// The size of the normal.
     size: f64,
 }
 
-/// What is computed here is off by less than this share of its largest term: a few roundings of double precision.
+/// What is computed here is off by less than this share of its largest term: a few roundings of double precision, and what the exact test of single
+/// precision may add.
 const ERROR: f64 = 1e-13;
+
+/// The same but for the exact test, which for rays of double precision adds nothing.
+const OWN_ERROR: f64 = 4e-15;
 
 impl Plane {
     #[inline(always)]
-    pub(super) fn of([a, b, c]: [Vec3; 3]) -> Self {
-        let [a, b, c] = [a, b, c].map(wide);
+    pub(super) fn of([a, b, c]: [Double3; 3]) -> Self {
         // Differences of single numbers are rounded in their last double digit, if at all.
-        let (u, v) = (minus(b, a), minus(c, a));
-        let normal =
-            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-        Self { normal, corner: a, size: length(u) * length(v) }
+        let (u, v) = (sub(b, a), sub(c, a));
+        Self { normal: cross(u, v), corner: a, size: length(u) * length(v) }
     }
 
-    /// Whether the ray starts beside the plane and goes away from it, beyond all doubt.
-    #[inline]
-    pub(super) fn is_left_by(&self, ray: &Ray) -> bool {
-        self.is_left(ray.origin, ray.direction)
-    }
-
+    /// Whether a ray starts beside the plane and goes away from it, beyond all doubt.
     #[inline(always)]
-    fn is_left(&self, origin: Vec3, direction: Vec3) -> bool {
-        let direction = wide(direction);
-        let start = minus(wide(origin), self.corner);
+    pub(super) fn is_left_by<R: Source>(&self, [origin, direction]: [Double3; 2]) -> bool {
+        let error = if R::IS_ROUNDED { OWN_ERROR } else { ERROR };
+        let start = sub(origin, self.corner);
         let (height, rise) = (dot(self.normal, start), dot(self.normal, direction));
-        let height_certain = height.abs() > ERROR * self.size * length(start);
-        let rise_certain = rise.abs() > ERROR * self.size * length(direction);
+        let height_certain = height.abs() > error * self.size * length(start);
+        let rise_certain = rise.abs() > error * self.size * length(direction);
         // The exact test rounds the distance: to zero, which counts, if it is less than the smallest number.
         let far_enough = height.abs() > f64::from(f32::MIN_POSITIVE) * rise.abs();
         (height * rise > 0.0) & height_certain & rise_certain & far_enough
@@ -69,6 +67,9 @@ impl<R: Source> Kernel for Leaving<'_, R> {
         // The rays in columns.
         let mut origins = [[0.0; GROUP]; 3];
         let mut directions = [[0.0; GROUP]; 3];
+        if R::IS_ROUNDED {
+            return some & leaving_in_truth(packet, rays, group, some, &plane);
+        }
         if packet.sorted >> group & 1 == 0 {
             let [ox, oy, oz, _, dx, dy, dz, _] = rays.columns(simd, group * GROUP);
             origins = [ox.to_array(), oy.to_array(), oz.to_array()];
@@ -89,29 +90,29 @@ impl<R: Source> Kernel for Leaving<'_, R> {
             let origin = Vec3::new(origins[0][lane], origins[1][lane], origins[2][lane]);
             let direction =
                 Vec3::new(directions[0][lane], directions[1][lane], directions[2][lane]);
-            *leaving = u32::from(plane.is_left(origin, direction)) << lane;
+            let line = [double(origin), double(direction)];
+            *leaving = u32::from(plane.is_left_by::<R>(line)) << lane;
         }
         some & leaving.into_iter().fold(0, |all, lane| all | lane)
     }
 }
 
+/// The same of rays that are rounded, as they are in truth: one by one, for they are not in columns.
 #[inline(always)]
-fn wide(v: Vec3) -> [f64; 3] {
-    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
-}
-
-#[inline(always)]
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn leaving_in_truth<R: Source>(
+    packet: &Packet,
+    rays: &R,
+    group: usize,
+    some: u32,
+    plane: &Plane,
+) -> u32 {
+    step::lanes(some)
+        .filter(|&lane| plane.is_left_by::<R>(rays.line(usize::from(packet.numbers[group][lane]))))
+        .fold(0, |all, lane| all | 1 << lane)
 }
 
 /// The sum of the coordinates' sizes: at least the length.
 #[inline(always)]
-fn length(v: [f64; 3]) -> f64 {
+fn length(v: Double3) -> f64 {
     v[0].abs() + v[1].abs() + v[2].abs()
 }

@@ -369,7 +369,7 @@ impl Packet {
             let lane = left.trailing_zeros() as usize % TRIANGLES;
             left &= left - 1;
             let meeting =
-                triangles.groups::<S, K>(simd, lane, &self.groups) & leaves[lane / LANES].groups;
+                triangles.groups::<S, R, K>(simd, lane, &self.groups) & leaves[lane / LANES].groups;
             work = work.replaced(meeting, work + simd.splat16(1.0));
             count += simd.push_chosen(meeting, &PAIRS[lane], &mut self.pairs, 1 + count).0;
         }
@@ -378,7 +378,8 @@ impl Packet {
             let pair = self.pairs[place] as usize;
             let (lane, group) = (pair / GROUP % TRIANGLES, pair % GROUP);
             let primitive = f32::from_bits(blocks[lane / LANES].primitives[lane % LANES]);
-            let (hit, doubtful) = self.test::<S, K, FAST>(simd, &triangles, lane, group, primitive);
+            let (hit, doubtful) =
+                self.test::<S, R, K, FAST>(simd, &triangles, lane, group, primitive);
             touched |= u32::from(hit | doubtful != 0) << group;
             if doubtful != 0 {
                 let leaf = leaves[lane / LANES].reference;

@@ -28,6 +28,9 @@ const EDGE_ROUNDINGS: f32 = 256.0;
 /// The error of a depth is at most so many roundings of the largest coordinate times the triangle's slant.
 const DEPTH_ROUNDINGS: f32 = 256.0;
 
+/// What edge functions and depths may be off by, in the same terms, per displacement of rays and triangles that are rounded from double precision.
+const MOVES_PER_DISPLACEMENT: f32 = 32.0;
+
 /// Of triangles more slanted than this against the rays not even the orientation is certain.
 const GREATEST_SLANT: f32 = 65536.0;
 
@@ -99,6 +102,8 @@ impl Packet {
         let from_center = (origin - tree.parts.center).abs().max_element();
         let distance = from_center + 2.0 * self.frame.farthest;
         self.frame.widen_for_parts(&tree.parts, distance);
+        self.frame.widen_for_rounding(rays);
+        self.frame.displacement = rays.displacement();
         self.is_bounded = false;
         self.start = f32::INFINITY;
         self.numbers = NUMBERS;
@@ -199,8 +204,9 @@ impl Triangles {
         let terms = reach * (longest + extent);
         let reach = reach * simd.splat16(ROUNDING);
         let longest = longer_side(ab).larger(longer_side(bc)).larger(longer_side(ca));
-        let errors = reach * simd.splat16(EDGE_ROUNDINGS) * longest * half.abs();
-        let tolerances = reach * simd.splat16(DEPTH_ROUNDINGS) * slant;
+        let moved = simd.splat16(MOVES_PER_DISPLACEMENT * frame.displacement);
+        let errors = (reach * simd.splat16(EDGE_ROUNDINGS) + moved) * longest * half.abs();
+        let tolerances = (reach * simd.splat16(DEPTH_ROUNDINGS) + moved) * slant;
         let size = area.abs();
         let known = simd.splat16(LEAST_VOLUME).less_or_equal(size)
             & size.less_or_equal(simd.splat16(GREATEST_VOLUME))

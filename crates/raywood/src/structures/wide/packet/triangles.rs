@@ -5,9 +5,11 @@
 
 use super::frame::Frame;
 use super::groups::Groups;
+use super::hits::CLOSE;
 use super::kind::Kind;
 use crate::geometry::{LANES, TriangleBlock};
 use crate::simd::{Float, Simd};
+use crate::structures::wide::source::Source;
 
 /// How many triangles are looked at together.
 pub(super) const TRIANGLES: usize = 2 * LANES;
@@ -195,14 +197,20 @@ impl Triangles {
     ///
     /// The greatest values are off by less than half the error of an edge function, and by less than the tolerance of a depth.
     #[inline(always)]
-    pub(super) fn groups<S: Simd, K: Kind>(&self, simd: S, lane: usize, groups: &Groups) -> u32 {
+    pub(super) fn groups<S: Simd, R: Source, K: Kind>(
+        &self,
+        simd: S,
+        lane: usize,
+        groups: &Groups,
+    ) -> u32 {
+        let close = if R::IS_ROUNDED { CLOSE } else { 0.0 };
         let least = self.greatest(simd, 0, lane, groups);
         let least = self.greatest(simd, 1, lane, groups).smaller(least);
         let least = self.greatest(simd, 2, lane, groups).smaller(least);
         let nearer = self.greatest(simd, 3, lane, groups);
         let nearer = match K::PARALLEL {
             true => nearer + simd.splat16(3.0 * self.tolerances[lane]),
-            false => nearer * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0)),
+            false => nearer * simd.splat16(3.0f32.mul_add(self.tolerances[lane], 1.0 + close)),
         };
         let error = simd.splat16(-2.0 * self.errors[lane]);
         error.less_or_equal(least) & simd.load16(&groups.least).less(nearer)
