@@ -8,7 +8,11 @@ use crate::oracle::{Point, cross, dot, double, length, sub};
 /// The distance of a point from a triangle.
 pub fn to_triangle(point: Vec3, corners: [Vec3; 3]) -> f64 {
     let p = double(point);
-    let [a, b, c] = corners.map(|corner| sub(double(corner), p));
+    of_triangle(corners.map(|corner| sub(double(corner), p)))
+}
+
+/// The distance of zero from a triangle.
+pub fn of_triangle([a, b, c]: [Point; 3]) -> f64 {
     let normal = cross(sub(b, a), sub(c, a));
     let inside = |from: Point, to: Point| dot(cross(from, to), normal) > 0.0;
     if inside(a, b) && inside(b, c) && inside(c, a) {

@@ -1,8 +1,9 @@
-//! Test helpers of the workspace: a brute-force oracle in double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
+//! Test helpers of the workspace: a brute-force oracle in double precision, one in integers for rays of double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
 //! pseudo-random numbers, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
 
 pub mod closed;
 pub mod distance;
+pub mod exact;
 pub mod html;
 pub mod image;
 pub mod nasty;

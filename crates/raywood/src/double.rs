@@ -71,3 +71,9 @@ pub(crate) fn some_unit_across(axis: Double3) -> Double3 {
     other[smallest] = 1.0;
     unit_or(cross(axis, other), [1.0, 0.0, 0.0])
 }
+
+/// The largest coordinate without its sign. Not for NaN, which may be taken for nothing.
+#[inline(always)]
+pub(crate) fn largest_magnitude(v: Double3) -> f64 {
+    v[0].abs().max(v[1].abs()).max(v[2].abs())
+}

@@ -50,6 +50,7 @@ mod build;
 mod bvh;
 mod change;
 mod double;
+mod doubles;
 mod error;
 mod geometry;
 mod hit;
@@ -72,6 +73,7 @@ pub use aabb::Aabb;
 pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
+pub use doubles::{Bvh64, ClosestPoint64, Hit64, Ray64, SurfacePoint64, TriangleMesh64};
 pub use error::BuildError;
 pub use geometry::{
     Assembly, Boxes, Capsule, Capsules, Cylinder, Cylinders, Disc, Discs, Quads, ShapeError,

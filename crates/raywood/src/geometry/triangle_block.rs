@@ -165,7 +165,7 @@ impl TriangleBlock {
 
     /// The corners of one number, moved and sheared as `watertight.rs` does it.
     #[inline(always)]
-    fn sheared<S: Simd>(&self, simd: S, ray: &PreparedRay, corner: usize) -> [S::F8; 3] {
+    pub(super) fn sheared<S: Simd>(&self, simd: S, ray: &PreparedRay, corner: usize) -> [S::F8; 3] {
         let corner = &self.corners[corner];
         let x = simd.load8(&corner[ray.axes[0]]) - simd.splat8(ray.permuted_origin[0]);
         let y = simd.load8(&corner[ray.axes[1]]) - simd.splat8(ray.permuted_origin[1]);

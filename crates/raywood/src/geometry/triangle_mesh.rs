@@ -56,6 +56,13 @@ pub enum MeshError {
         /// How many there are in all.
         count: usize,
     },
+    /// Some positions of a mesh of double precision are beyond [`Ray64::GREATEST`](crate::Ray64::GREATEST).
+    TooFar {
+        /// The first such position.
+        first: usize,
+        /// How many there are in all.
+        count: usize,
+    },
     /// Another number of positions than the mesh has whose triangles are kept.
     PositionCount {
         /// How many it has.
@@ -95,6 +102,12 @@ impl fmt::Display for MeshError {
                     "{count} vertices are NaN or infinite, the first of them is vertex {first}"
                 )
             }
+            Self::TooFar { first, count } => {
+                write!(
+                    f,
+                    "{count} vertices have coordinates beyond 1e45, the first of them is vertex {first}"
+                )
+            }
             Self::PositionCount { before, now } => {
                 write!(f, "{now} positions for a mesh of {before} vertices")
             }
@@ -122,6 +135,11 @@ impl TriangleMesh {
     ) -> Result<Self, MeshError> {
         let positions: Vec<Vec3> = positions.into_iter().map(|p| Vec3::from(p.into())).collect();
         Self::of_arrays(positions.into(), triangles.into())
+    }
+
+    /// The same of what was checked before.
+    pub(crate) fn of_sound(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+        Self { positions: positions.into(), triangles: triangles.into() }
     }
 
     /// The same of arrays that may lie elsewhere.

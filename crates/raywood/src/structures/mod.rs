@@ -17,7 +17,7 @@ pub use octree::Octree;
 pub use registry::StructureKind;
 pub use structure::Structure;
 pub use wide::WideBvh;
-pub(crate) use wide::{Chooser, HitVisitor, SavedWide, Unsound, WideNode};
+pub(crate) use wide::{Chooser, DoubleScene, HitVisitor, SavedWide, Unsound, WideNode};
 
 use crate::{Geometry, Hit, HitColumnsMut, NodeView, Probe, Ray};
 use crate::{SimdLevel, StructureStats, ValidationError, Vec3};
