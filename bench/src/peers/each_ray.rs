@@ -1,9 +1,10 @@
 //! The loop that drives every library without batches of its own: pieces of the set go to the threads, each traced ray by ray.
 
+use std::borrow::Cow;
 use std::hint::black_box;
 
 use rayon::prelude::*;
-use raywood::{Hit, Ray};
+use raywood::{Hit, Hit64, Ray};
 
 use super::Tracer;
 use crate::answers::Answers;
@@ -27,6 +28,12 @@ impl Answer for bool {
 impl Answer for Option<Hit> {
     fn collect(answers: &[Self]) -> Answers {
         Answers::closest(answers.iter().map(|hit| hit.map(|hit| hit.t)))
+    }
+}
+
+impl Answer for Option<Hit64> {
+    fn collect(answers: &[Self]) -> Answers {
+        Answers::closest(answers.iter().map(|hit| hit.map(|hit| hit.t as f32)))
     }
 }
 
@@ -80,28 +87,39 @@ impl<R: Copy + Send + Sync, A: Answer, F: Fn(&R) -> A + Send + Sync> Tracer for 
 }
 
 /// A set of rays handed over whole to a library that traces batches.
-pub(super) struct Batch<'a, A, F> {
-    rays: &'a [Ray],
+pub(super) struct Batch<'a, R: Clone, A, F> {
+    rays: Cow<'a, [R]>,
     answers: Vec<A>,
     trace: F,
 }
 
-impl<'a, A: Answer + 'a, F: Fn(&[Ray], &mut [A]) + Send + Sync + 'a> Batch<'a, A, F> {
+impl<'a, R, A, F> Batch<'a, R, A, F>
+where
+    R: Copy + Send + Sync + 'a,
+    A: Answer + 'a,
+    F: Fn(&[R], &mut [A]) + Send + Sync + 'a,
+{
     /// The rays, and what answers all of them.
-    pub(super) fn boxed(set: &'a RaySet, trace: F) -> Option<Box<dyn Tracer + 'a>> {
-        let answers = vec![A::default(); set.rays.len()];
-        Some(Box::new(Self { rays: &set.rays, answers, trace }))
+    pub(super) fn boxed(rays: impl Into<Cow<'a, [R]>>, trace: F) -> Option<Box<dyn Tracer + 'a>> {
+        let rays = rays.into();
+        let answers = vec![A::default(); rays.len()];
+        Some(Box::new(Self { rays, answers, trace }))
     }
 }
 
-impl<A: Answer, F: Fn(&[Ray], &mut [A]) + Send + Sync> Tracer for Batch<'_, A, F> {
+impl<R, A, F> Tracer for Batch<'_, R, A, F>
+where
+    R: Copy + Send + Sync,
+    A: Answer,
+    F: Fn(&[R], &mut [A]) + Send + Sync,
+{
     fn reset(&mut self) {
-        warm(self.rays);
+        warm(&self.rays);
         self.answers.fill(A::default());
     }
 
     fn trace(&mut self) {
-        (self.trace)(self.rays, &mut self.answers);
+        (self.trace)(&self.rays, &mut self.answers);
     }
 
     fn answers(&self) -> Answers {

@@ -3,8 +3,8 @@
 use std::hint::black_box;
 
 use raywood::{
-    BuildOptions, BuildPreset, HitColumns, Ray, Structure, StructureKind, TriangleMesh,
-    TriangleTest, Vec3,
+    BuildOptions, BuildPreset, Bvh64, HitColumns, Ray, Ray64, Structure, StructureKind,
+    TriangleMesh, TriangleMesh64, TriangleTest, Vec3,
 };
 
 use super::each_ray::{Batch, EachRay};
@@ -16,7 +16,8 @@ use crate::ray_sets::RaySet;
 pub(super) const ENTRY: PeerEntry = PeerEntry {
     name: "raywood",
     settings: "bvh-wide (which Bvh is) by the preset best, with reinsertion and spatial splits, and bvh-sah-binned (modes batch and single) by default options; closest hits with t, u, v and primitive; \
-        fast modes with the triangle test of Moeller and Trumbore",
+        fast modes with the triangle test of Moeller and Trumbore; \
+        double modes with Bvh64 over the same coordinates and rays as f64",
     build,
 };
 
@@ -28,7 +29,23 @@ fn build<'a>(mesh: &'a TriangleMesh, _: Option<&'a Library>) -> Built<'a> {
         Structure::build(StructureKind::BvhWide, mesh, &options).map_err(|error| error.to_string())
     };
     let (wide, fast) = (wide(TriangleTest::Watertight)?, wide(TriangleTest::Fast)?);
-    Ok(Box::new(Raywood { bvh, wide, fast }))
+    let positions = mesh.positions().iter().map(|&p| double(p)).collect();
+    let double = TriangleMesh64::new(positions, mesh.triangles().to_vec())
+        .map_err(|error| error.to_string())?;
+    let double = Bvh64::build_with(double, &BuildPreset::Best.options())
+        .map_err(|error| error.to_string())?;
+    Ok(Box::new(Raywood { bvh, wide, fast, double }))
+}
+
+/// The same coordinates in double precision.
+fn double(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+/// The same ray in double precision.
+fn double_ray(ray: &Ray) -> Ray64 {
+    Ray64::new(double(ray.origin), double(ray.direction))
+        .with_interval(f64::from(ray.t_min), f64::from(ray.t_max))
 }
 
 struct Raywood<'a> {
@@ -37,11 +54,13 @@ struct Raywood<'a> {
     wide: Structure<&'a TriangleMesh>,
     /// The same tree with a triangle test that is not watertight.
     fast: Structure<&'a TriangleMesh>,
+    /// The mesh and the rays in double precision.
+    double: Bvh64,
 }
 
 impl Peer for Raywood<'_> {
     fn modes(&self) -> Vec<Mode<'_>> {
-        let Self { bvh, wide, fast } = self;
+        let Self { bvh, wide, fast, double } = self;
         vec![
             batch_mode("wide batch", wide),
             Mode::new("wide single", true, |set: &RaySet| {
@@ -53,9 +72,9 @@ impl Peer for Raywood<'_> {
             }),
             Mode::new("fast batch", false, |set: &RaySet| {
                 if set.kind.any_hit() {
-                    Batch::boxed(set, |rays, occluded| fast.occluded_batch(rays, occluded))
+                    Batch::boxed(&set.rays, |rays, occluded| fast.occluded_batch(rays, occluded))
                 } else {
-                    Batch::boxed(set, |rays, hits| fast.intersect_batch(rays, hits))
+                    Batch::boxed(&set.rays, |rays, hits| fast.intersect_batch(rays, hits))
                 }
             }),
             Mode::new("fast single", false, |set: &RaySet| {
@@ -65,13 +84,28 @@ impl Peer for Raywood<'_> {
                     EachRay::new(set, Ray::clone, |ray| fast.intersect(ray)).boxed()
                 }
             }),
+            Mode::new("double batch", true, |set: &RaySet| {
+                let rays: Vec<_> = set.rays.iter().map(double_ray).collect();
+                if set.kind.any_hit() {
+                    Batch::boxed(rays, |rays, occluded| double.occluded_batch(rays, occluded))
+                } else {
+                    Batch::boxed(rays, |rays, hits| double.intersect_batch(rays, hits))
+                }
+            }),
+            Mode::new("double single", true, |set: &RaySet| {
+                if set.kind.any_hit() {
+                    EachRay::new(set, double_ray, |ray| double.occluded(ray)).boxed()
+                } else {
+                    EachRay::new(set, double_ray, |ray| double.intersect(ray)).boxed()
+                }
+            }),
             Mode::new("wide point", true, |set: &RaySet| point_tracer(wide, set)),
             Mode::new("fast point", false, |set: &RaySet| point_tracer(fast, set)),
             Mode::new("batch", true, |set: &RaySet| {
                 if set.kind.any_hit() {
-                    Batch::boxed(set, |rays, occluded| bvh.occluded_batch(rays, occluded))
+                    Batch::boxed(&set.rays, |rays, occluded| bvh.occluded_batch(rays, occluded))
                 } else {
-                    Batch::boxed(set, |rays, hits| bvh.intersect_batch(rays, hits))
+                    Batch::boxed(&set.rays, |rays, hits| bvh.intersect_batch(rays, hits))
                 }
             }),
             Mode::new("single", true, |set: &RaySet| {
@@ -92,9 +126,9 @@ pub(super) fn batch_mode<'a>(
 ) -> Mode<'a> {
     Mode::new(name, true, |set: &RaySet| {
         if set.kind.any_hit() {
-            Batch::boxed(set, |rays, occluded| structure.occluded_batch(rays, occluded))
+            Batch::boxed(&set.rays, |rays, occluded| structure.occluded_batch(rays, occluded))
         } else {
-            Batch::boxed(set, |rays, hits| structure.intersect_batch(rays, hits))
+            Batch::boxed(&set.rays, |rays, hits| structure.intersect_batch(rays, hits))
         }
     })
 }
