@@ -2,8 +2,8 @@
 
 /// Where a ray first meets a [`TriangleMesh64`](crate::TriangleMesh64).
 ///
-/// `t` is off the exact distance by less than 1e-12 of itself. `u` and `v` are off by less than 1e-12, so the point that they stand for is off by less than a
-/// billionth of a thousandth of the triangle's size, whatever its coordinates and the ray's length are.
+/// `t` is off the exact distance by less than 1e-12 of itself, and `u` and `v` by less than 1e-12, whatever the triangle's coordinates and the ray's
+/// length are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Hit64 {
