@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let names = ["roof", "columns", "spring", "crates", "pond", "balls", "waves"];
     scene.add(roof);
     scene.add(Cylinders::new(columns.to_vec())?);
-    scene.add(Capsules::new(Capsule::along(&spring, 0.05).collect())?);
+    scene.add(Capsules::new(Capsule::along(&spring, 0.12).collect())?);
     scene.add(Boxes::new(vec![Aabb::new([-4.0, 0.5, 3.0], [-3.0, 1.5, 4.0])])?);
     scene.add(Discs::new(vec![Disc::new([3.0, 0.6, 3.0], [0.0, 1.0, 0.0], 0.5)])?);
     scene.add(Spheres::new(vec![([3.0, 1.2, 3.0].into(), 0.3), ([0.0, 2.0, -4.0].into(), 1.0)])?);
