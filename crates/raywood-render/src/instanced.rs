@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use raywood::{Aabb, BoundsMargin, BuildOptions, Bvh, Hit, Instance, MeshPart, ObjectPoint, Ray};
-use raywood::{Spheres, StructureStats, Tlas, Traceable, Transform, Vec3};
+use raywood::{Aabb, BoundsMargin, BuildOptions, Bvh, Hit, HitRules, Instance, MeshPart};
+use raywood::{ObjectPoint, Ray, Spheres, StructureStats, Tlas, Traceable, Transform, Vec3};
 use raywood_scene::{MaterialId, Rgb, Scene};
 
 use crate::prepare_error::PrepareError;
@@ -72,6 +72,29 @@ impl Traceable for Object<'_> {
     fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint {
         let own = Hit { primitive: hit.primitive - self.first, ..*hit };
         self.traceable().object_point(ray, &own)
+    }
+
+    fn intersect_chosen(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        let mut accepts = |hit: &Hit| accepts(&self.in_scene(*hit));
+        let hit = self.traceable().intersect_chosen(ray, limit, rules, &mut accepts);
+        hit.map(|hit| self.in_scene(hit))
+    }
+
+    fn visit_hits(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<()> {
+        let mut visit = |hit| visit(self.in_scene(hit));
+        self.traceable().visit_hits(ray, limit, rules, &mut visit)
     }
 
     fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use raywood::{Bvh, Instance, Ray, Tlas, Transform, TriangleMesh};
+use raywood::{Bvh, Face, Instance, QueryOptions, Ray, Tlas, Transform, TriangleMesh};
 
 /// What only cameras see.
 const CAMERA: u32 = 1;
@@ -58,6 +58,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Masks: the mirrored grove throws no shadows.
     assert!(forest.occluded_masked(&down(12.01, 8.02), SHADOW));
     assert!(!forest.occluded_masked(&down(-16.01, 8.02), SHADOW));
+
+    // What a tree answers scenes answer, too: of all hits of a ray across both groves the first with each fir.
+    let across = Ray::new([-50.0, 8.02, 1.0], [1.0, 0.0, 0.0]);
+    let mut entered = Vec::new();
+    forest.all_hits_with(&across, QueryOptions::new().cull(Face::Back), &mut entered);
+    assert_eq!(entered.len(), 20);
+    println!("{} firs in a row", entered.len());
 
     // Many rays over all cores.
     let rays: Vec<_> = (0..10_000)

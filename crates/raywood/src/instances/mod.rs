@@ -1,6 +1,8 @@
 //! Scenes of instances: a tree over trees, each of which stands at many places.
 
 mod change;
+mod chosen;
+mod crossings;
 mod error;
 mod many;
 mod place;
@@ -8,6 +10,7 @@ mod point;
 mod traceable;
 mod transform;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use error::InstanceError;
@@ -18,8 +21,8 @@ pub use transform::{Transform, TransformError};
 
 use crate::structures::wide::top::TopTree;
 use crate::{
-    Aabb, BuildOptions, Bvh, Hit, HitColumns, Ray, SimdLevel, SurfacePoint, TriangleMesh, Vec3,
-    parallel,
+    Aabb, BuildOptions, Bvh, Hit, HitColumns, HitRules, Ray, SimdLevel, SurfacePoint, TriangleMesh,
+    Vec3, parallel,
 };
 
 /// An object at a place.
@@ -77,7 +80,7 @@ impl<B> Clone for Instance<B> {
 /// - At exactly equal `t` the lowest instance wins, and of it the primitive that its object finds: the lowest one, but where distances that differ there are one after rounding here.
 /// - No ray slips between triangles of one instance that share an edge.
 /// - Rays of batches that meet the same instance are traced through it together, which rounds differently: [`Hit::agrees_with`] says by how much, and of equally near ones a higher instance may then be named. Answers never depend on the number of threads.
-/// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) do not count here.
+/// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) count where there are [options](Self::intersect_with).
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
 #[derive(Clone, Debug)]
 pub struct Tlas<B = Bvh<TriangleMesh>> {
@@ -300,6 +303,35 @@ impl<B: Traceable> Traceable for Tlas<B> {
         let (index, instance) = self.locate(hit.instance);
         let place = &self.built.placements[index];
         place.point(ray, &Hit { instance, ..*hit })
+    }
+
+    fn intersect_chosen(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.closest_chosen(ray, limit, rules, accepts)
+    }
+
+    fn occluded_chosen(
+        &self,
+        ray: &Ray,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> bool {
+        self.any_chosen(ray, rules, accepts)
+    }
+
+    fn visit_hits(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<()> {
+        self.visit_crossings(ray, limit, rules, visit)
     }
 
     fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {

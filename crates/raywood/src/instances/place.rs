@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use super::transform::{Inverse, RAY_ERROR};
+use super::transform::{Inverse, ObjectRay, RAY_ERROR};
 use super::{
     BoundsMargin, Built, Instance, InstanceError, ObjectPoint, Tlas, Traceable, Transform,
 };
@@ -177,7 +177,13 @@ impl<B: Traceable> Placement<B> {
     pub(super) fn intersect(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
         let seen = self.inverse.ray(ray);
         let hit = self.object.intersect_within(&seen.ray, seen.limit(limit), mask)?;
-        Some(Hit { t: hit.t * seen.unit, instance: self.first + hit.instance, ..hit })
+        Some(self.in_scene(&hit, &seen))
+    }
+
+    /// A hit of a ray in the object's space as the scene tells of it.
+    #[inline(always)]
+    pub(super) fn in_scene(&self, hit: &Hit, seen: &ObjectRay) -> Hit {
+        Hit { t: hit.t * seen.unit, instance: self.first + hit.instance, ..*hit }
     }
 
     #[inline(always)]
@@ -198,14 +204,8 @@ impl<B: Traceable> Tlas<B> {
     #[inline]
     pub(super) fn closest(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> {
         let prepared = PreparedRay::new(ray)?;
-        let Built { placements, tree, margin, .. } = &self.built;
         let mut best: Option<Hit> = None;
-        let margin = margin.of(ray);
-        tree.walk(self.level, &prepared, margin, limit, |number, limit| {
-            let place = &placements[number as usize];
-            if place.mask & mask == 0 {
-                return ControlFlow::Continue(limit);
-            }
+        let _ = self.walk(ray, &prepared, limit, mask, |place, limit| {
             match place.intersect(ray, limit, mask) {
                 Some(hit) if is_nearer(&hit, best.as_ref()) => {
                     best = Some(hit);
@@ -221,15 +221,33 @@ impl<B: Traceable> Tlas<B> {
     #[inline]
     pub(super) fn any(&self, ray: &Ray, mask: u32) -> bool {
         let Some(prepared) = PreparedRay::new(ray) else { return false };
-        let Built { placements, tree, margin, .. } = &self.built;
-        let mut blocked = false;
-        let margin = margin.of(ray);
-        tree.walk(self.level, &prepared, margin, f32::INFINITY, |number, limit| {
-            let place = &placements[number as usize];
-            blocked = place.mask & mask != 0 && place.occluded(ray, mask);
-            if blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
+        let flow = self.walk(ray, &prepared, f32::INFINITY, mask, |place, limit| {
+            match place.occluded(ray, mask) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(limit),
+            }
         });
-        blocked
+        flow.is_break()
+    }
+
+    /// Tells `visit` of each instance that the mask lets see and the ray may meet: see [`TopTree::walk`].
+    #[inline(always)]
+    pub(super) fn walk(
+        &self,
+        ray: &Ray,
+        prepared: &PreparedRay,
+        limit: f32,
+        mask: u32,
+        mut visit: impl FnMut(&Placement<B>, f32) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<()> {
+        let Built { placements, tree, margin, .. } = &self.built;
+        tree.walk(self.level, prepared, margin.of(ray), limit, |number, limit| {
+            let place = &placements[number as usize];
+            if place.mask & mask == 0 {
+                return ControlFlow::Continue(limit);
+            }
+            visit(place, limit)
+        })
     }
 }
 

@@ -1,15 +1,18 @@
 //! What can be placed in a scene: a tree over a geometry, or a scene of instances again.
 
+use std::ops::ControlFlow;
+
 use super::ObjectPoint;
-use crate::structures::AccelerationStructure;
-use crate::{Aabb, Bvh, Geometry, Hit, Ray};
+use crate::structures::{AccelerationStructure, Chooser, HitVisitor};
+use crate::{Aabb, AcceptAll, Bvh, Geometry, Hit, HitRules, PreparedRay, Ray};
 
 /// What a [`Tlas`](super::Tlas) can have instances of: a [`Bvh`], or a [`Tlas`](super::Tlas) for scenes on several levels.
 ///
 /// Scenes of several kinds of geometry have a type of their own that is either, and hands every question on:
 ///
 /// ```
-/// use raywood::{Aabb, BoundsMargin, Bvh, Hit, ObjectPoint, Ray, Spheres, Traceable, TriangleMesh};
+/// use raywood::{Aabb, BoundsMargin, Bvh, Hit, HitRules, ObjectPoint, Ray, Spheres, Traceable, TriangleMesh};
+/// use std::ops::ControlFlow;
 ///
 /// enum Object {
 ///     Mesh(Bvh<TriangleMesh>),
@@ -32,6 +35,12 @@ use crate::{Aabb, Bvh, Geometry, Hit, Ray};
 ///     fn intersect_within(&self, ray: &Ray, limit: f32, mask: u32) -> Option<Hit> { self.get().intersect_within(ray, limit, mask) }
 ///     fn occluded_within(&self, ray: &Ray, mask: u32) -> bool { self.get().occluded_within(ray, mask) }
 ///     fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint { self.get().object_point(ray, hit) }
+///     fn intersect_chosen(&self, ray: &Ray, limit: f32, rules: &HitRules, accepts: &mut dyn FnMut(&Hit) -> bool) -> Option<Hit> {
+///         self.get().intersect_chosen(ray, limit, rules, accepts)
+///     }
+///     fn visit_hits(&self, ray: &Ray, limit: f32, rules: &HitRules, visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>) -> ControlFlow<()> {
+///         self.get().visit_hits(ray, limit, rules, visit)
+///     }
 /// }
 /// ```
 pub trait Traceable: Send + Sync {
@@ -56,6 +65,35 @@ pub trait Traceable: Send + Sync {
 
     /// The point that a ray hit. `hit` must be an answer to `ray`.
     fn object_point(&self, ray: &Ray, hit: &Hit) -> ObjectPoint;
+
+    /// The closest hit at `t_min <= t < t_max` that the rules let count and `accepts` accepts, which is asked last, of hits as this object tells of them. What lies beyond `limit` may be left out.
+    fn intersect_chosen(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> Option<Hit>;
+
+    /// Whether there is any such hit. The default looks for the closest.
+    fn occluded_chosen(
+        &self,
+        ray: &Ray,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> bool {
+        self.intersect_chosen(ray, f32::INFINITY, rules, accepts).is_some()
+    }
+
+    /// Tells `visit` of every hit at `t_min <= t < t_max` that the rules let count, each crossing once as [`Bvh::all_hits`] says, in any order, until it breaks off. It returns the limit from there
+    /// on, at first `limit`: what lies beyond may be left out.
+    fn visit_hits(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<()>;
 
     /// The closest hits of many rays at `t_min <= t < t_max`, on the calling thread: of as many places. What can trace rays together does so; the default asks one by one.
     fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
@@ -119,11 +157,67 @@ impl<G: Geometry + Send> Traceable for Bvh<G> {
         }
     }
 
+    fn intersect_chosen(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.intersect_with_within(ray, limit, rules.with(accepts))
+    }
+
+    fn occluded_chosen(
+        &self,
+        ray: &Ray,
+        rules: &HitRules,
+        accepts: &mut dyn FnMut(&Hit) -> bool,
+    ) -> bool {
+        self.occluded_with(ray, rules.with(accepts))
+    }
+
+    fn visit_hits(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        rules: &HitRules,
+        visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<()> {
+        let Some(ray) = PreparedRay::new(ray) else { return ControlFlow::Continue(()) };
+        let chooser = rules.with(AcceptAll).chooser(&self.geometry, &ray);
+        let mut visitor = UpToLimit { limit: limit.min(ray.t_max), chooser, visit };
+        self.tree.visit_crossings(&self.geometry, &ray, &mut visitor)
+    }
+
     fn intersect_many(&self, rays: &[Ray], _mask: u32, hits: &mut [Option<Hit>]) {
         self.tree.intersect_batch(&self.geometry, rays, hits);
     }
 
     fn occluded_many(&self, rays: &[Ray], _mask: u32, occluded: &mut [bool]) {
         self.tree.occluded_batch(&self.geometry, rays, occluded);
+    }
+}
+
+/// Tells of the hits that a chooser lets count, up to a limit that may fall.
+struct UpToLimit<'a, C> {
+    limit: f32,
+    chooser: C,
+    visit: &'a mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
+}
+
+impl<C: Chooser> HitVisitor for UpToLimit<'_, C> {
+    const LIMIT_SHRINKS: bool = true;
+
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, hit: Hit) -> ControlFlow<()> {
+        if hit.t <= self.limit && self.chooser.counts(&hit) {
+            self.limit = self.limit.min((self.visit)(hit)?);
+        }
+        ControlFlow::Continue(())
     }
 }

@@ -129,9 +129,10 @@ impl<G: Geometry> Bvh<G> {
     }
 }
 
-/// The order of hits: by distance, of equally near ones by number.
-pub(super) fn by_distance(a: &Hit, b: &Hit) -> Ordering {
-    a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal).then(a.primitive.cmp(&b.primitive))
+/// The order of hits: by distance, of equally near ones by the number of the instance, then by that of the primitive.
+pub(crate) fn by_distance(a: &Hit, b: &Hit) -> Ordering {
+    let numbers = |hit: &Hit| (hit.instance, hit.primitive);
+    a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal).then(numbers(a).cmp(&numbers(b)))
 }
 
 /// Tells a closure of every hit.

@@ -25,9 +25,19 @@ impl<G: Geometry> Bvh<G> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn intersect_with<F: HitFilter>(&self, ray: &Ray, options: QueryOptions<F>) -> Option<Hit> {
+        self.intersect_with_within(ray, f32::INFINITY, options)
+    }
+
+    /// As [`intersect_with`](Self::intersect_with); what lies beyond the limit may be left out.
+    pub(crate) fn intersect_with_within<F: HitFilter>(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        options: QueryOptions<F>,
+    ) -> Option<Hit> {
         let ray = PreparedRay::new(ray)?;
         let mut chooser = options.chooser(&self.geometry, &ray);
-        self.tree.choose_hit::<_, false>(&self.geometry, &ray, &mut chooser)
+        self.tree.choose_hit::<_, false>(&self.geometry, &ray, limit, &mut chooser)
     }
 
     /// Whether any hit at `t_min <= t < t_max` counts under the options. It stops at the first that does.
@@ -44,6 +54,6 @@ impl<G: Geometry> Bvh<G> {
     pub fn occluded_with<F: HitFilter>(&self, ray: &Ray, options: QueryOptions<F>) -> bool {
         let Some(ray) = PreparedRay::new(ray) else { return false };
         let mut chooser = options.chooser(&self.geometry, &ray);
-        self.tree.choose_hit::<_, true>(&self.geometry, &ray, &mut chooser).is_some()
+        self.tree.choose_hit::<_, true>(&self.geometry, &ray, f32::INFINITY, &mut chooser).is_some()
     }
 }

@@ -19,7 +19,7 @@ const PIECE: usize = 512;
 
 impl HitLists {
     /// Has `append` put the hits of each ray behind those that are there, rays being shared out among threads.
-    pub(super) fn collect(rays: &[Ray], append: impl Fn(&Ray, &mut Vec<Hit>) + Sync) -> Self {
+    pub(crate) fn collect(rays: &[Ray], append: impl Fn(&Ray, &mut Vec<Hit>) + Sync) -> Self {
         let pieces = parallel::map_pieces(rays, PIECE, |rays| {
             let (mut hits, mut ends) = (Vec::new(), Vec::with_capacity(rays.len()));
             for ray in rays {

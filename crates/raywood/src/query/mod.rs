@@ -11,9 +11,11 @@ mod solid;
 mod sphere_cast;
 mod visit;
 
+pub(crate) use all_hits::by_distance;
 pub use closest_point::ClosestPoint;
 pub use hit_lists::HitLists;
-pub use options::{AcceptAll, Face, HitFilter, QueryOptions};
+pub(crate) use nearest_hits::NearestHits;
+pub use options::{AcceptAll, Face, HitFilter, HitRules, QueryOptions};
 pub use overlap::{Ball, Frustum, Region};
 pub use solid::Solid;
 pub use sphere_cast::SphereHit;

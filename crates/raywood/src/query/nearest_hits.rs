@@ -64,10 +64,9 @@ impl<G: Geometry> Bvh<G> {
         hits: &mut Vec<Hit>,
     ) {
         let (Some(ray), true) = (PreparedRay::new(ray), k > 0) else { return };
-        let start = hits.len();
-        let mut nearest = Nearest { hits, start, k, limit: ray.t_max, chooser };
+        let mut nearest = NearestHits::behind(hits, k, ray.t_max, chooser);
         let _ = self.tree.visit_crossings(&self.geometry, &ray, &mut nearest);
-        hits[start..].sort_unstable_by(by_distance);
+        nearest.sort();
     }
 }
 
@@ -82,7 +81,7 @@ impl Chooser for All {
 }
 
 /// Keeps the nearest hits that count, as soon as there are `k` as a heap: the farthest of them comes first, and none is farther than the one at half its place.
-struct Nearest<'a, C> {
+pub(crate) struct NearestHits<'a, C> {
     /// Those of other rays, and behind them those of this one.
     hits: &'a mut Vec<Hit>,
     start: usize,
@@ -91,7 +90,20 @@ struct Nearest<'a, C> {
     chooser: &'a mut C,
 }
 
-impl<C: Chooser> HitVisitor for Nearest<'_, C> {
+impl<'a, C> NearestHits<'a, C> {
+    /// None yet, behind those of other rays: of at most `k`, which is not zero, none of them beyond the limit.
+    pub(crate) fn behind(hits: &'a mut Vec<Hit>, k: usize, limit: f32, chooser: &'a mut C) -> Self {
+        let start = hits.len();
+        Self { hits, start, k, limit, chooser }
+    }
+
+    /// Puts them into order.
+    pub(crate) fn sort(self) {
+        self.hits[self.start..].sort_unstable_by(by_distance);
+    }
+}
+
+impl<C: Chooser> HitVisitor for NearestHits<'_, C> {
     const LIMIT_SHRINKS: bool = true;
 
     #[inline(always)]

@@ -38,7 +38,7 @@ impl HitFilter for AcceptAll {
 }
 
 /// What lets a hit count, for one query: [`intersect_with`](crate::Bvh::intersect_with), [`occluded_with`](crate::Bvh::occluded_with),
-/// [`all_hits_with`](crate::Bvh::all_hits_with), [`nearest_hits_with`](crate::Bvh::nearest_hits_with). A hit that does not count is as if it
+/// [`all_hits_with`](crate::Bvh::all_hits_with), [`nearest_hits_with`](crate::Bvh::nearest_hits_with), and the same of a [`Tlas`](crate::Tlas). A hit that does not count is as if it
 /// were not there: the ray goes on behind it.
 ///
 /// Plain queries ask nothing of this, masks included, and pay nothing for it.
@@ -61,9 +61,12 @@ impl HitFilter for AcceptAll {
 pub struct QueryOptions<F = AcceptAll> {
     cull: Option<Face>,
     mask: u32,
-    skip: Option<u32>,
+    skip: Skip,
     filter: F,
 }
+
+/// The primitive that does not count, by the numbers of its instance and its own.
+type Skip = Option<(u32, u32)>;
 
 impl Default for QueryOptions {
     fn default() -> Self {
@@ -84,14 +87,21 @@ impl<F> QueryOptions<F> {
         Self { cull: Some(face), ..self }
     }
 
-    /// Only primitives count whose [mask](Geometry::mask) has a bit in common with this one.
+    /// Only primitives count whose [mask](Geometry::mask) has a bit in common with this one; in scenes of instances, whose instances' [masks](crate::Instance::mask) have one as well, on
+    /// every level.
     pub fn mask(self, mask: u32) -> Self {
         Self { mask, ..self }
     }
 
     /// This primitive does not count: the one that a ray starts on, where its point is known by other means than [a hit](crate::SurfacePoint).
     pub fn skip(self, primitive: u32) -> Self {
-        Self { skip: Some(primitive), ..self }
+        self.skip_in(0, primitive)
+    }
+
+    /// This primitive of this instance does not count: as [`skip`](Self::skip), which means that of instance 0, in [scenes of instances](crate::Tlas), by the numbers that
+    /// [hits](Hit) have there.
+    pub fn skip_in(self, instance: u32, primitive: u32) -> Self {
+        Self { skip: Some((instance, primitive)), ..self }
     }
 
     /// Only those hits count that the filter accepts, as of leaves drawn on larger triangles. It is asked last, in any order, of no hit twice, and not of all: a
@@ -105,9 +115,48 @@ impl<F> QueryOptions<F> {
     }
 }
 
+/// The part of [`QueryOptions`] that is asked where a hit is found: what [`Traceable`](crate::Traceable)s hand on to each other. The rest of them the scene asks itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct HitRules {
+    /// Only instances and primitives count whose masks have a bit in common with this one.
+    pub mask: u32,
+    /// Hits of this side of the surface do not count. It is that of the object, however the object is placed: of a mirrored one, too, the outside is the front.
+    pub cull: Option<Face>,
+}
+
+impl HitRules {
+    /// Everything counts that some group sees.
+    pub const ALL: Self = Self { mask: u32::MAX, cull: None };
+
+    /// These rules, and a filter, as options of a tree in a scene.
+    pub(crate) fn with<F: HitFilter>(self, filter: F) -> QueryOptions<F> {
+        QueryOptions { cull: self.cull, mask: self.mask, skip: None, filter }
+    }
+}
+
+/// The part of [`QueryOptions`] that knows hits by their numbers in a scene.
+pub(crate) struct HitChooser<F> {
+    skip: Skip,
+    filter: F,
+}
+
+impl<F: HitFilter> Chooser for HitChooser<F> {
+    #[inline(always)]
+    fn counts(&mut self, hit: &Hit) -> bool {
+        self.skip != Some((hit.instance, hit.primitive)) && self.filter.accepts(hit)
+    }
+}
+
 impl<F: HitFilter> QueryOptions<F> {
+    /// The options in their two parts.
+    pub(crate) fn parts(self) -> (HitRules, HitChooser<F>) {
+        let Self { cull, mask, skip, filter } = self;
+        (HitRules { mask, cull }, HitChooser { skip, filter })
+    }
+
     /// The options at work on a ray.
-    pub(super) fn chooser<'a, G: Geometry>(
+    pub(crate) fn chooser<'a, G: Geometry>(
         self,
         geometry: &'a G,
         ray: &'a PreparedRay,
@@ -117,7 +166,7 @@ impl<F: HitFilter> QueryOptions<F> {
 }
 
 /// Chooses hits of a ray by options.
-pub(super) struct OptionChooser<'a, G, F> {
+pub(crate) struct OptionChooser<'a, G, F> {
     options: QueryOptions<F>,
     geometry: &'a G,
     ray: &'a PreparedRay,
@@ -127,7 +176,7 @@ impl<G: Geometry, F: HitFilter> Chooser for OptionChooser<'_, G, F> {
     #[inline(always)]
     fn counts(&mut self, hit: &Hit) -> bool {
         let Self { options, geometry, ray } = self;
-        options.skip != Some(hit.primitive)
+        options.skip != Some((hit.instance, hit.primitive))
             && options.mask & geometry.mask(hit.primitive) != 0
             && options.cull.is_none_or(|culled| face(*geometry, ray, hit) != culled)
             && options.filter.accepts(hit)

@@ -23,7 +23,7 @@ fn turned(rng: &mut Rng) -> Transform {
 }
 
 /// Transforms of every kind that keep sizes about as they are.
-fn friendly(rng: &mut Rng) -> Vec<Transform> {
+pub(crate) fn friendly(rng: &mut Rng) -> Vec<Transform> {
     let moved = |t: Transform, rng: &mut Rng| t.then(&Transform::translation(3.0 * rng.in_cube()));
     let shear =
         Transform::from_rows([[1.0, 0.7, 0.0, 0.0], [0.0, 1.0, -0.4, 0.0], [0.2, 0.0, 1.0, 0.0]]);
@@ -39,7 +39,7 @@ fn friendly(rng: &mut Rng) -> Vec<Transform> {
 }
 
 /// Transforms that look for trouble: tiny, huge, far away, flat, all of these at once.
-fn nasty_transforms(rng: &mut Rng) -> Vec<Transform> {
+pub(crate) fn nasty_transforms(rng: &mut Rng) -> Vec<Transform> {
     let mut all = friendly(rng);
     for exponent in [-6, -3, 3, 6] {
         let size = 10f32.powi(exponent);
@@ -152,7 +152,7 @@ fn a_scene_is_the_nearest_of_its_instances_on_every_level() {
 }
 
 /// How thick the cube from -1 to 1 is where a transform takes it, in terms of how far it reaches from zero.
-fn thickness(transform: &Transform) -> f64 {
+pub(crate) fn thickness(transform: &Transform) -> f64 {
     let rows = transform.rows().map(|row| row.map(f64::from));
     let column = |j: usize| rows.map(|row| row[j]);
     let cross = |a: [f64; 3], b: [f64; 3]| {

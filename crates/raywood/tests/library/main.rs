@@ -12,6 +12,7 @@ mod forest;
 mod grids;
 mod hit_options;
 mod instance_batches;
+mod instance_options;
 mod instances;
 mod kd_tree;
 mod moving_instances;

@@ -22,6 +22,7 @@ pub(super) struct Chosen<'a, C, const ANY: bool, const FAST: bool> {
     pub(super) tree: &'a WideBvh,
     pub(super) geometry: &'a dyn Geometry,
     pub(super) ray: &'a PreparedRay,
+    pub(super) limit: f32,
     pub(super) chooser: &'a mut C,
 }
 
@@ -30,8 +31,8 @@ impl<C: Chooser, const ANY: bool, const FAST: bool> Kernel for Chosen<'_, C, ANY
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
-        let Self { tree, geometry, ray, chooser } = self;
-        let mut nearest = Nearest::new(ray);
+        let Self { tree, geometry, ray, limit, chooser } = self;
+        let mut nearest = Nearest::within(ray, limit);
         let slabs = tree.slabs(ray);
         let mut stack = SmallStack::new(tree);
         let (keys, items) = stack.parts();

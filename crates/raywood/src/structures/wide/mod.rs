@@ -182,21 +182,22 @@ impl WideBvh {
         dispatch_on(self.level, crossings::Crossings { tree: self, geometry, ray, visitor })
     }
 
-    /// The closest of the hits that count; with `ANY`, any of them.
+    /// The closest of the hits that count, unless it lies beyond the limit: then it may be found or not. With `ANY`, any of them.
     pub(crate) fn choose_hit<C: Chooser, const ANY: bool>(
         &self,
         geometry: &dyn Geometry,
         ray: &PreparedRay,
+        limit: f32,
         chooser: &mut C,
     ) -> Option<Hit> {
         match self.triangle_test {
             TriangleTest::Watertight => dispatch_on(
                 self.level,
-                chosen::Chosen::<_, ANY, false> { tree: self, geometry, ray, chooser },
+                chosen::Chosen::<_, ANY, false> { tree: self, geometry, ray, limit, chooser },
             ),
             TriangleTest::Fast => dispatch_on(
                 self.level,
-                chosen::Chosen::<_, ANY, true> { tree: self, geometry, ray, chooser },
+                chosen::Chosen::<_, ANY, true> { tree: self, geometry, ray, limit, chooser },
             ),
         }
     }

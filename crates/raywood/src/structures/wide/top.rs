@@ -132,9 +132,9 @@ impl TopTree {
         margin: f32,
         limit: f32,
         visit: F,
-    ) {
+    ) -> ControlFlow<()> {
         let limit = if limit < ray.t_max { limit } else { ray.t_max };
-        dispatch_on(level, Walk { tree: self, ray, margin, limit, visit });
+        dispatch_on(level, Walk { tree: self, ray, margin, limit, visit })
     }
 }
 
@@ -215,16 +215,16 @@ struct Walk<'a, F> {
 }
 
 impl<F: FnMut(u32, f32) -> ControlFlow<(), f32>> Kernel for Walk<'_, F> {
-    type Output = ();
+    type Output = ControlFlow<()>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
         let Self { tree, ray, margin, limit, visit } = self;
         if tree.nodes.is_empty() {
-            return;
+            return ControlFlow::Continue(());
         }
         let slabs = tree.slabs(ray, margin);
-        walk_below(simd, tree, &slabs, 0, limit, visit);
+        walk_below(simd, tree, &slabs, 0, limit, visit)
     }
 }
 
@@ -237,16 +237,13 @@ pub(super) fn walk_below<S: Simd, F: FnMut(u32, f32) -> ControlFlow<(), f32>>(
     item: u32,
     mut limit: f32,
     mut visit: F,
-) {
+) -> ControlFlow<()> {
     let mut stack = TopStack::new(tree.depth);
     let (keys, items) = stack.parts();
     let (mut top, mut current) = (1, item);
     while current != END {
         if current & 1 == 1 {
-            match visit(current >> 1, limit) {
-                ControlFlow::Continue(next) => limit = next,
-                ControlFlow::Break(()) => return,
-            }
+            limit = visit(current >> 1, limit)?;
         } else {
             let node = &tree.nodes[(current >> 1) as usize];
             let (met, near) = slabs.children_met(simd, node, limit);
@@ -262,6 +259,7 @@ pub(super) fn walk_below<S: Simd, F: FnMut(u32, f32) -> ControlFlow<(), f32>>(
             }
         };
     }
+    ControlFlow::Continue(())
 }
 
 /// How many items a stack has room for without asking for memory.

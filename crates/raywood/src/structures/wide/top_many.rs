@@ -95,7 +95,7 @@ impl<V: Visitor> Kernel for WalkMany<'_, V> {
                 for &ray in &active {
                     let place = ray as usize;
                     let mut left = limits[place];
-                    walk_below(simd, tree, &slabs[place], item, left, |entry, limit| {
+                    let _ = walk_below(simd, tree, &slabs[place], item, left, |entry, limit| {
                         left = visitor.one(entry, ray, limit);
                         if left == DONE {
                             ControlFlow::Break(())
