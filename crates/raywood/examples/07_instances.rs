@@ -59,12 +59,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!(forest.occluded_masked(&down(12.01, 8.02), SHADOW));
     assert!(!forest.occluded_masked(&down(-16.01, 8.02), SHADOW));
 
-    // What a tree answers scenes answer, too: of all hits of a ray across both groves the first with each fir.
+    // What a tree answers scenes answer, too: of all hits of a ray across both groves the first with each fir, and what is closest to a point above one, its top.
     let across = Ray::new([-50.0, 8.02, 1.0], [1.0, 0.0, 0.0]);
     let mut entered = Vec::new();
     forest.all_hits_with(&across, QueryOptions::new().cull(Face::Back), &mut entered);
     assert_eq!(entered.len(), 20);
-    println!("{} firs in a row", entered.len());
+    let closest = forest.closest_point([12.0, 8.0, 5.0], f32::INFINITY).expect("firs stand there");
+    println!("{} firs in a row, the top of one at height {:.2}", entered.len(), closest.point.z);
+    assert!((closest.point.z - 3.69).abs() < 1e-5 && closest.instance == 23);
 
     // Many rays over all cores.
     let rays: Vec<_> = (0..10_000)

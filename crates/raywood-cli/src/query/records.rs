@@ -44,7 +44,7 @@ impl Record {
 
     /// A closest point.
     pub(super) fn of_closest(closest: Option<&ClosestPoint>) -> Self {
-        closest.map_or(Self::MISS, |&ClosestPoint { point, distance, primitive, u, v }| Self {
+        closest.map_or(Self::MISS, |&ClosestPoint { point, distance, primitive, u, v, .. }| Self {
             distance,
             primitive: primitive as i32,
             u,

@@ -2,11 +2,14 @@
 
 mod change;
 mod chosen;
+mod closest_point;
 mod crossings;
 mod error;
 mod many;
+mod overlap;
 mod place;
 mod point;
+mod space;
 mod traceable;
 mod transform;
 
@@ -14,8 +17,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use error::InstanceError;
+pub use overlap::SceneRegion;
 use place::Placement;
 pub use point::ObjectPoint;
+pub use space::{Searchable, SpaceSearch};
 pub use traceable::{BoundsMargin, Traceable};
 pub use transform::{Transform, TransformError};
 

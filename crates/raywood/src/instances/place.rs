@@ -23,7 +23,7 @@ pub(super) struct Placement<B> {
     /// The number of the first of its instances on the lowest level.
     pub(super) first: u32,
     pub(super) object: Arc<B>,
-    transform: Transform,
+    pub(super) transform: Transform,
 }
 
 impl<B> Clone for Placement<B> {

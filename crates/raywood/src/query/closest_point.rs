@@ -21,6 +21,8 @@ pub struct ClosestPoint {
     pub distance: f32,
     /// Which primitive it lies on; at exactly equal distance the lowest number wins.
     pub primitive: u32,
+    /// Which instance of a scene; 0 where there are no instances.
+    pub instance: u32,
     /// First surface coordinate, as that of a [`Hit`](crate::Hit).
     pub u: f32,
     /// Second surface coordinate.
@@ -169,7 +171,7 @@ impl<'t, G: Geometry> Nearest<'_, 't, G> {
             }
         };
         if is_better {
-            self.best = Some(ClosestPoint { point, distance, primitive, u, v });
+            self.best = Some(ClosestPoint { point, distance, primitive, instance: 0, u, v });
             self.limit = self.limit.min(self.frame.square(distance));
         }
     }

@@ -12,7 +12,7 @@ use raywood_testkit::{Rng, distance, nasty, points, shapes};
 fn by_asking_all<G: Geometry>(geometry: &G, point: Vec3, max: f32) -> Option<ClosestPoint> {
     let all = (0..geometry.len() as u32).filter_map(|primitive| {
         let PrimitivePoint { point, distance, u, v } = geometry.closest_point(primitive, point)?;
-        Some(ClosestPoint { point, distance, primitive, u, v })
+        Some(ClosestPoint { point, distance, primitive, instance: 0, u, v })
     });
     all.filter(|found| found.distance <= max).min_by(|a, b| {
         (a.distance, a.primitive).partial_cmp(&(b.distance, b.primitive)).expect("numbers")

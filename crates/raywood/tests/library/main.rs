@@ -13,6 +13,7 @@ mod grids;
 mod hit_options;
 mod instance_batches;
 mod instance_options;
+mod instance_space;
 mod instances;
 mod kd_tree;
 mod moving_instances;

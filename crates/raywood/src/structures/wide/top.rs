@@ -105,6 +105,36 @@ impl TopTree {
         self.depth
     }
 
+    /// How far the boxes reach from zero along any axis.
+    pub(crate) fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    /// Has a query look into entries, those with small keys mostly first. A break ends the search.
+    pub(crate) fn search<Q: TopQuery>(&self, query: &mut Q) -> ControlFlow<()> {
+        let mut waiting = Vec::with_capacity(4 * WIDTH);
+        if !self.nodes.is_empty() {
+            waiting.push((0.0, 0));
+        }
+        while let Some((key, item)) = waiting.pop() {
+            if key > query.limit() {
+                continue;
+            }
+            if item & 1 == 1 {
+                query.entry(item >> 1)?;
+                continue;
+            }
+            let node = &self.nodes[(item >> 1) as usize];
+            let (keys, limit, first) = (query.keys(node), query.limit(), waiting.len());
+            let counts = |key: f64| key <= limit && key < f64::INFINITY;
+            let children = keys.into_iter().zip(node.children);
+            waiting.extend(children.filter(|&(key, _)| counts(key)));
+            // The smallest is taken first.
+            waiting[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        }
+        ControlFlow::Continue(())
+    }
+
     /// A node by its number.
     #[inline(always)]
     pub(super) fn node(&self, number: u32) -> &WideNode {
@@ -136,6 +166,18 @@ impl TopTree {
         let limit = if limit < ray.t_max { limit } else { ray.t_max };
         dispatch_on(level, Walk { tree: self, ray, margin, limit, visit })
     }
+}
+
+/// What a search through the tree looks for.
+pub(crate) trait TopQuery {
+    /// The key of each child of a node; infinite where there is none.
+    fn keys(&self, node: &WideNode) -> [f64; WIDTH];
+
+    /// What has a larger key need not be looked into.
+    fn limit(&self) -> f64;
+
+    /// Looks into an entry.
+    fn entry(&mut self, entry: u32) -> ControlFlow<()>;
 }
 
 /// A tree that is being made.
