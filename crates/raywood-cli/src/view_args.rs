@@ -24,13 +24,13 @@ pub(crate) struct ViewArgs {
     up: Option<Point>,
 
     /// Field of view from bottom to top
-    #[arg(long, value_name = "DEGREES", value_parser = field_of_view)]
+    #[arg(long, value_name = "DEGREES", value_parser = field_of_view, hide_short_help = true)]
     fov: Option<f32>,
 
     /// The scene's camera to use
     ///
     /// By its number, from 1, or its name; `raywood info` lists them. Else it is the first.
-    #[arg(long, value_name = "N|NAME")]
+    #[arg(long, value_name = "N|NAME", hide_short_help = true)]
     camera: Option<String>,
 
     /// Point light; may be repeated

@@ -14,7 +14,7 @@ use crate::parse::{Aovs, Exposure, aovs, exposure, tone_map, whole_number};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(crate) struct ImageArgs {
-    /// The picture: .png, .jpg, .exr or .hdr [default: render.png]
+    /// Picture: .png .jpg .exr .hdr [default: render.png]
     ///
     /// The ending chooses the format. PNG and JPEG hold what a screen shows; OpenEXR and Radiance (.hdr) hold the light as it was computed, linear and without limits.
     #[arg(
@@ -22,7 +22,8 @@ pub(crate) struct ImageArgs {
         long,
         value_name = "FILE",
         default_value = "render.png",
-        hide_default_value = true
+        hide_default_value = true,
+        help_heading = None::<&'static str>
     )]
     pub(super) output: PathBuf,
 

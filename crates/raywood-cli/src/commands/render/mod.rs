@@ -54,7 +54,7 @@ pub(crate) struct Args {
     /// Most reflections and refractions
     ///
     /// How often light may be mirrored or refracted on its way to the eye.
-    #[arg(long, value_name = "N", default_value_t = RenderOptions::default().max_depth)]
+    #[arg(long, value_name = "N", default_value_t = RenderOptions::default().max_depth, hide_short_help = true)]
     depth: u32,
 
     /// Threads to use, else all cores
@@ -74,7 +74,7 @@ pub(crate) struct Args {
     strict: bool,
 
     /// Print the statistics as JSON
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     json: bool,
 
     #[command(flatten)]

@@ -13,19 +13,19 @@ pub(crate) struct SamplingArgs {
     /// Rays per pixel [default: 4]
     ///
     /// With --noise or --time the most [default: 65536].
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", help_heading = None::<&'static str>)]
     samples: Option<u32>,
 
     /// Stop where the relative error is so small
     ///
     /// As 0.02 or 2%. The picture is rendered in passes of 4 to 16 rays a pixel. A square of 16x16 pixels is done when it has at least 16 rays a pixel and the root mean square of its pixels' standard errors, estimated from how much the passes differ, is so small a share of its mean brightness (and a tenth of that of the whole picture). The same picture for any number of threads.
-    #[arg(long, value_name = "ERROR", value_parser = noise)]
+    #[arg(long, value_name = "ERROR", value_parser = noise, hide_short_help = true)]
     noise: Option<f32>,
 
     /// Stop after so long, as 30s, 5m or 1h
     ///
     /// As many passes as fit; each of all pixels.
-    #[arg(long, value_name = "TIME", value_parser = duration)]
+    #[arg(long, value_name = "TIME", value_parser = duration, hide_short_help = true)]
     time: Option<Duration>,
 
     /// How rays are spread: tent, box, blackman-harris
