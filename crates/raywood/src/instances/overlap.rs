@@ -90,7 +90,7 @@ impl<B: Searchable> Tlas<B> {
     /// let scene = Tlas::build((0..100).map(|x| at(2.0 * x as f32)).collect())?;
     ///
     /// let mut found = Vec::new();
-    /// let _ = scene.overlapping(&Aabb::new([9.0, 0.0, -1.0], [13.0, 1.0, 1.0]), |instance, primitive| {
+    /// let _ = scene.overlapping(&Aabb::new([9.5, 0.0, -1.0], [13.0, 1.0, 1.0]), |instance, primitive| {
     ///     found.push((instance, primitive));
     ///     ControlFlow::Continue(())
     /// });
