@@ -22,7 +22,7 @@ use crate::tiles::{SQUARE_SIZE, Tile, TilePass, TilePixels, tiles_in_morton_orde
 /// When a picture is done, beside having all samples that its options ask for: what comes first counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// The relative error at which a square of pixels is done: see [`relative_error`].
+    /// The relative error at which a square of pixels is done: the root mean square of its standard errors over its mean brightness and a tenth of the picture's.
     pub noise: Option<f32>,
     /// How long passes may take.
     pub time: Option<Duration>,
