@@ -2,7 +2,7 @@
 
 use std::io;
 
-use exr::meta::attribute::{AttributeValue, Chromaticities};
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, ImageAttributes, Layer as Part,
     LayerAttributes, Text, WritableImage, f16,
@@ -53,13 +53,16 @@ fn write(
     }
 
     let mut attributes = LayerAttributes::default();
+    // One attribute for all: the crate keeps others in random order, and equal pictures are to be equal files.
+    let mut comments = Vec::new();
     for (name, value) in &options.metadata {
         if name == "Software" {
             attributes.software_name = Some(text(value));
         } else {
-            attributes.other.insert(text(name), AttributeValue::Text(text(value)));
+            comments.push(format!("{name}: {value}"));
         }
     }
+    attributes.comments = (!comments.is_empty()).then(|| text(&comments.join("\n")));
     let part =
         Part::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()));
     let mut picture = exr::prelude::Image::from_layer(part);

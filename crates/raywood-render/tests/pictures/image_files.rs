@@ -192,7 +192,6 @@ fn light_that_no_number_holds_is_written_as_the_next() {
 
 #[test]
 fn layers_lie_beside_the_picture_each_as_exact_as_it_needs() {
-    use exr::meta::attribute::AttributeValue;
     use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 
     let image = gradient(4, 2);
@@ -219,11 +218,8 @@ fn layers_lie_beside_the_picture_each_as_exact_as_it_needs() {
     assert_eq!(channels[5].sample_data, FlatSamples::U32((0..8).collect()));
     let attributes = &read.layer_data.attributes;
     assert_eq!(attributes.software_name.as_ref().map(ToString::to_string), Some("raywood".into()));
-    let command = attributes.other.get("raywood:command".as_bytes());
-    let Some(AttributeValue::Text(command)) = command else {
-        panic!("no command among {:?}", attributes.other)
-    };
-    assert_eq!(command.bytes(), "-o Bäume.exr".as_bytes());
+    let comments = attributes.comments.as_ref().expect("comments");
+    assert_eq!(comments.bytes(), "raywood:command: -o Bäume.exr".as_bytes());
 }
 
 #[test]

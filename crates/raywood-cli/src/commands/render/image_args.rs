@@ -71,7 +71,7 @@ pub(crate) struct ImageArgs {
 
     /// What the file says of how it was made
     ///
-    /// `none`; `settings`: version, integrator, samples, seed and the like, so that equal pictures are equal files; `full`: the command, the time it took and the threads, too. In texts of PNG, attributes of OpenEXR and comments of Radiance files.
+    /// `none`; `settings`: version, integrator, samples, seed and the like, so that equal pictures are equal files; `full`: the command, the time it took and the threads, too. In texts of PNG, comments of OpenEXR and of Radiance files.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Metadata::Settings, hide_short_help = true)]
     metadata: Metadata,
 }
