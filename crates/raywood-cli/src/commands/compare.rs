@@ -70,7 +70,7 @@ pub(crate) struct Args {
     view: ViewArgs,
 
     /// Refuse what is otherwise mended
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     strict: bool,
 }
 
