@@ -2,11 +2,9 @@
 
 use raywood_scene::Rgb;
 
-use super::first_hits::{FirstHits, Shown};
+use super::first_hits::{FirstHits, OfEach};
 use super::view_depths::ViewDepths;
 use super::{Frame, Integrator};
-use crate::path_samples::PathSamples;
-use crate::stats::RayCounts;
 use crate::wave::surfaces::Surfaces;
 
 /// The registry's line for this picture.
@@ -14,31 +12,17 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "depth",
     help: "how far away things are: the nearest white, the farthest black, by the reciprocal",
     shows_light: false,
-    start: |frame| Box::new(FirstHits { frame, shown: Depth { seen: ViewDepths::of(frame) } }),
+    start: |frame| Box::new(FirstHits { frame, shown: OfEach(depth(ViewDepths::of(frame))) }),
 };
 
 /// Reciprocals of distances, which tell near things apart however far others are.
-struct Depth {
-    seen: ViewDepths,
-}
-
-impl Shown for Depth {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        _frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        let ViewDepths { nearest, farthest, .. } = self.seen;
-        let least = nearest / farthest;
-        let range = (1.0 - least).max(f32::EPSILON);
-        for (number, color) in colors.iter_mut().enumerate() {
-            let share = (nearest / surfaces.lengths[number] - least) / range;
-            *color = Rgb::splat(share.clamp(0.0, 1.0));
-        }
-        RayCounts::default()
+fn depth(
+    ViewDepths { nearest, farthest, .. }: ViewDepths,
+) -> impl Fn(&Frame<'_>, &Surfaces, usize) -> Rgb + Sync {
+    let least = nearest / farthest;
+    let range = (1.0 - least).max(f32::EPSILON);
+    move |_, surfaces, number| {
+        let share = (nearest / surfaces.lengths[number] - least) / range;
+        Rgb::splat(share.clamp(0.0, 1.0))
     }
 }

@@ -3,12 +3,11 @@
 use raywood::Ray;
 use raywood_scene::{Camera, Rgb};
 
-use super::first_hits::{FirstHits, Shown};
+use super::first_hits::{FirstHits, MOST_HOLES, OfEach, Shown};
 use super::{Frame, TileRenderer};
 use crate::PreparedScene;
 use crate::lights::Lights;
 use crate::options::{RenderError, RenderOptions};
-use crate::path_samples::PathSamples;
 use crate::progress::Progress;
 use crate::stats::RayCounts;
 use crate::textured::opacity_at;
@@ -46,14 +45,14 @@ pub fn features(
     options.validate()?;
     let lights = Lights::default();
     let frame = Frame::new(scene, &lights, camera, options, progress)?;
-    let places = means(&FirstHits { frame: &frame, shown: Places }, samples)?;
-    let depths = means(&FirstHits { frame: &frame, shown: Depths }, samples)?;
+    let places = means(&FirstHits { frame: &frame, shown: OfEach(place) }, samples)?;
+    let depths = means(&FirstHits { frame: &frame, shown: OfEach(depth) }, samples)?;
     let coverage: Vec<f32> = depths.iter().map(|depth| depth.y).collect();
     let of_covered =
         |sum: f32, coverage: f32| if coverage > 0.0 { sum / coverage } else { f32::INFINITY };
     Ok(Features {
-        albedo: means(&FirstHits { frame: &frame, shown: Albedo }, samples)?,
-        normals: means(&FirstHits { frame: &frame, shown: Normals }, samples)?,
+        albedo: means(&FirstHits { frame: &frame, shown: OfEach(albedo) }, samples)?,
+        normals: means(&FirstHits { frame: &frame, shown: OfEach(normal) }, samples)?,
         positions: places
             .iter()
             .zip(&coverage)
@@ -100,8 +99,6 @@ pub fn ids(
 
 /// What a ray meets first that is there by half at least.
 fn id(scene: &PreparedScene<'_>, mut ray: Ray) -> [u32; 3] {
-    // Behind so many holes one after the other everything counts as whole.
-    const MOST_HOLES: u32 = 256;
     for hole in 0..=MOST_HOLES {
         let Some(hit) = scene.tracer().intersect(&ray) else { return [NO_ID; 3] };
         let is_there = hole == MOST_HOLES
@@ -129,85 +126,25 @@ fn means<S: Shown>(shown: &FirstHits<'_, S>, samples: u32) -> Result<Vec<Rgb>, R
     Ok(pixels)
 }
 
-/// What surfaces scatter, mirror and let through.
-struct Albedo;
-
-/// Normals for shading.
-struct Normals;
-
-/// Where surfaces are.
-struct Places;
-
-/// How far in front of the eye they are, and how much of them there is.
-struct Depths;
-
-impl Shown for Albedo {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        for (number, color) in colors.iter_mut().enumerate() {
-            let surface = surfaces.get(frame.scene, number);
-            let material = surface.material;
-            *color = (surface.diffuse + material.mirror + material.transmission).min(Rgb::ONE);
-        }
-        RayCounts::default()
-    }
+/// What a surface scatters, mirrors and lets through.
+fn albedo(frame: &Frame<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+    let surface = surfaces.get(frame.scene, number);
+    let material = surface.material;
+    (surface.diffuse + material.mirror + material.transmission).min(Rgb::ONE)
 }
 
-impl Shown for Normals {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        _frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        for (number, color) in colors.iter_mut().enumerate() {
-            *color = get(&surfaces.normals, number);
-        }
-        RayCounts::default()
-    }
+/// Its normal for shading.
+fn normal(_: &Frame<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+    get(&surfaces.normals, number)
 }
 
-impl Shown for Places {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        _frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        for (number, color) in colors.iter_mut().enumerate() {
-            *color = get(&surfaces.positions, number);
-        }
-        RayCounts::default()
-    }
+/// Where it is.
+fn place(_: &Frame<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+    get(&surfaces.positions, number)
 }
 
-impl Shown for Depths {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        for (number, color) in colors.iter_mut().enumerate() {
-            let along = frame.camera.depth_along(get(&surfaces.directions, number));
-            *color = Rgb::new(along * surfaces.lengths[number], 1.0, 0.0);
-        }
-        RayCounts::default()
-    }
+/// How far in front of the eye it is, and that there is one.
+fn depth(frame: &Frame<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+    let along = frame.camera.depth_along(get(&surfaces.directions, number));
+    Rgb::new(along * surfaces.lengths[number], 1.0, 0.0)
 }

@@ -32,6 +32,26 @@ pub(super) trait Shown: Sync {
     ) -> RayCounts;
 }
 
+/// What is shown of each surface by itself, without rays, and black where there is none: a function of the surfaces of a wave and a number among them.
+pub(super) struct OfEach<F>(pub(super) F);
+
+impl<F: Fn(&Frame<'_>, &Surfaces, usize) -> Rgb + Sync> Shown for OfEach<F> {
+    const NOTHING: Rgb = Rgb::ZERO;
+
+    fn show(
+        &self,
+        frame: &Frame<'_>,
+        surfaces: &Surfaces,
+        _samples: &dyn Fn(usize) -> PathSamples,
+        colors: &mut [Rgb],
+    ) -> RayCounts {
+        for (number, color) in colors.iter_mut().enumerate() {
+            *color = (self.0)(frame, surfaces, number);
+        }
+        RayCounts::default()
+    }
+}
+
 /// A picture of what is seen first.
 pub(super) struct FirstHits<'a, S> {
     pub(super) frame: &'a Frame<'a>,
@@ -70,7 +90,7 @@ impl Travelled for Seen {
 }
 
 /// Behind so many holes one after the other everything counts as whole.
-const MOST_HOLES: u32 = 256;
+pub(super) const MOST_HOLES: u32 = 256;
 
 thread_local! {
     /// Kept from tile to tile, so that none asks for memory.

@@ -2,11 +2,9 @@
 
 use raywood_scene::Rgb;
 
-use super::first_hits::{FirstHits, Shown};
+use super::first_hits::{FirstHits, OfEach};
 use super::{Frame, Integrator};
-use crate::path_samples::PathSamples;
 use crate::sampling::mix;
-use crate::stats::RayCounts;
 use crate::wave::surfaces::Surfaces;
 
 /// The registry's line for this picture.
@@ -14,32 +12,17 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "ids",
     help: "a colour for each material, a shade of it for each triangle",
     shows_light: false,
-    start: |frame| Box::new(FirstHits { frame, shown: Ids }),
+    start: |frame| Box::new(FirstHits { frame, shown: OfEach(id) }),
 };
 
-/// Colours made of the numbers of materials, shades of those of primitives.
-struct Ids;
-
-impl Shown for Ids {
-    const NOTHING: Rgb = Rgb::ZERO;
-
-    fn show(
-        &self,
-        frame: &Frame<'_>,
-        surfaces: &Surfaces,
-        _samples: &dyn Fn(usize) -> PathSamples,
-        colors: &mut [Rgb],
-    ) -> RayCounts {
-        for (number, color) in colors.iter_mut().enumerate() {
-            let element = surfaces.element(number);
-            let hue = material_color(frame.scene.material_index(element) as u32);
-            // Instances are counted on, so that their triangles differ, too.
-            let own = element.primitive ^ element.instance.wrapping_mul(0x9e37_79b9);
-            let shade = 0.75 + 0.25 * unit(mix(own ^ 0x51ed_270b));
-            *color = shade * hue;
-        }
-        RayCounts::default()
-    }
+/// A colour made of the number of the material, a shade of it by that of the primitive.
+fn id(frame: &Frame<'_>, surfaces: &Surfaces, number: usize) -> Rgb {
+    let element = surfaces.element(number);
+    let hue = material_color(frame.scene.material_index(element) as u32);
+    // Instances are counted on, so that their triangles differ, too.
+    let own = element.primitive ^ element.instance.wrapping_mul(0x9e37_79b9);
+    let shade = 0.75 + 0.25 * unit(mix(own ^ 0x51ed_270b));
+    shade * hue
 }
 
 /// A bright colour for each number, those of the first ones far apart: the hue turns by the golden ratio.
