@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
 use raywood_render::{Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, TONE_MAPS, ToneMap};
+use raywood_scene::closest_name;
 
 /// A point or direction, `X,Y,Z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,38 +79,28 @@ pub(crate) fn whole_number(text: &str, least: u32, most: u32) -> Result<u32, Str
     number.ok_or_else(|| format!("expected a whole number from {least} to {most}"))
 }
 
-/// The name of an acceleration structure.
-pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
-    StructureKind::from_name(text).ok_or_else(|| {
-        let names: Vec<_> = StructureKind::ALL.iter().map(|kind| kind.name()).collect();
-        format!("expected one of {}", names.join(", "))
-    })
-}
-
-/// The name of a method of rendering.
-pub(crate) fn integrator(text: &str) -> Result<&'static Integrator, String> {
-    Integrator::by_name(text).ok_or_else(|| {
-        let names: Vec<_> = INTEGRATORS.iter().map(|integrator| integrator.name).collect();
-        let meant = names.iter().min_by_key(|name| edit_distance(text, name));
-        let meant = meant.filter(|name| edit_distance(text, name) <= name.len() / 2);
+/// What was found by a name, or else which names there are, and which was probably meant.
+fn named<T>(
+    text: &str,
+    found: Option<T>,
+    names: impl IntoIterator<Item = &'static str>,
+) -> Result<T, String> {
+    found.ok_or_else(|| {
+        let names: Vec<_> = names.into_iter().collect();
+        let meant = closest_name(text, names.iter().copied());
         let question = meant.map_or(String::new(), |name| format!("did you mean {name}? "));
         format!("{question}expected one of {}", names.join(", "))
     })
 }
 
-/// How many letters must be put in, left out or changed to make one word the other (Levenshtein 1966).
-fn edit_distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut distances: Vec<usize> = (0..=to.len()).collect();
-    for (row, letter) in from.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut distances[0], row + 1);
-        for (column, other) in to.iter().enumerate() {
-            let changed = diagonal + usize::from(letter != *other);
-            diagonal = distances[column + 1];
-            distances[column + 1] = changed.min(diagonal + 1).min(distances[column] + 1);
-        }
-    }
-    distances[to.len()]
+/// The name of an acceleration structure.
+pub(crate) fn structure_kind(text: &str) -> Result<StructureKind, String> {
+    named(text, StructureKind::from_name(text), StructureKind::ALL.iter().map(|kind| kind.name()))
+}
+
+/// The name of a method of rendering.
+pub(crate) fn integrator(text: &str) -> Result<&'static Integrator, String> {
+    named(text, Integrator::by_name(text), INTEGRATORS.iter().map(|integrator| integrator.name))
 }
 
 /// How much of the light is shown.
@@ -133,10 +124,7 @@ pub(crate) fn exposure(text: &str) -> Result<Exposure, String> {
 
 /// The name of a way of tone mapping.
 pub(crate) fn tone_map(text: &str) -> Result<&'static ToneMap, String> {
-    ToneMap::by_name(text).ok_or_else(|| {
-        let names: Vec<_> = TONE_MAPS.iter().map(|tone_map| tone_map.name).collect();
-        format!("expected one of {}", names.join(", "))
-    })
+    named(text, ToneMap::by_name(text), TONE_MAPS.iter().map(|tone_map| tone_map.name))
 }
 
 /// Layers beside a picture.
@@ -163,10 +151,7 @@ pub(crate) fn aovs(text: &str) -> Result<Aovs, String> {
 
 /// The name of a filter of pixels.
 pub(crate) fn pixel_filter(text: &str) -> Result<PixelFilter, String> {
-    PixelFilter::from_name(text).ok_or_else(|| {
-        let names = PixelFilter::ALL.map(PixelFilter::name);
-        format!("expected one of {}", names.join(", "))
-    })
+    named(text, PixelFilter::from_name(text), PixelFilter::ALL.map(PixelFilter::name))
 }
 
 /// A relative error, as a share or in percent.
@@ -211,10 +196,7 @@ pub(crate) fn focus(text: &str) -> Result<Focus, String> {
 
 /// The name of a preset of builds.
 pub(crate) fn build_preset(text: &str) -> Result<BuildPreset, String> {
-    BuildPreset::from_name(text).ok_or_else(|| {
-        let names: Vec<_> = BuildPreset::ALL.iter().map(|preset| preset.name()).collect();
-        format!("expected one of {}", names.join(", "))
-    })
+    named(text, BuildPreset::from_name(text), BuildPreset::ALL.iter().map(|preset| preset.name()))
 }
 
 /// A number of bytes, perhaps with K, M, G or T for powers of 1024: `500M`.
@@ -237,18 +219,16 @@ pub(crate) fn memory_size(text: &str) -> Result<usize, String> {
 
 /// The name of a level of vector instructions.
 pub(crate) fn simd_level(text: &str) -> Result<SimdLevel, String> {
-    SimdLevel::from_name(text).ok_or_else(|| {
-        let names: Vec<_> = SimdLevel::ALL.iter().map(|level| level.name()).collect();
-        format!("expected one of {}", names.join(", "))
-    })
+    named(text, SimdLevel::from_name(text), SimdLevel::ALL.iter().map(|level| level.name()))
 }
 
 /// The name of what a heat map shows.
 pub(crate) fn heat_quantity(text: &str) -> Result<HeatQuantity, String> {
-    HeatQuantity::from_name(text).ok_or_else(|| {
-        let names: Vec<_> = HeatQuantity::ALL.iter().map(|quantity| quantity.name()).collect();
-        format!("expected one of {}", names.join(", "))
-    })
+    named(
+        text,
+        HeatQuantity::from_name(text),
+        HeatQuantity::ALL.iter().map(|quantity| quantity.name()),
+    )
 }
 
 /// A finite number above zero.
@@ -340,7 +320,6 @@ mod tests {
         }
         let said = integrator("photon-mapping").expect_err("no such integrator");
         assert!(said.starts_with("expected one of whitted, "), "{said}");
-        assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(heat_quantity("tests"), Ok(HeatQuantity::Tests));
         let said = heat_quantity("time").expect_err("no such quantity");
         assert_eq!(said, "expected one of nodes, boxes, primitives, tests");

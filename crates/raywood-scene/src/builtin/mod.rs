@@ -12,8 +12,7 @@ mod whitted;
 
 pub use error::BuiltinError;
 
-use crate::Scene;
-use error::closest;
+use crate::{Scene, closest_name};
 
 /// The scene that is rendered when none is named.
 pub const DEFAULT_BUILTIN: &str = "hall";
@@ -81,7 +80,7 @@ pub fn builtin(name_and_parameters: &str) -> Result<Scene, BuiltinError> {
     let Some(entry) = BUILTINS.iter().find(|b| b.name == name) else {
         return Err(BuiltinError::UnknownScene {
             name: name.to_owned(),
-            suggestion: closest(name, names()),
+            suggestion: closest_name(name, names()),
             known: names().collect(),
         });
     };
@@ -103,7 +102,7 @@ fn parse_values(entry: &Builtin, query: &str) -> Result<Values, BuiltinError> {
             return Err(BuiltinError::UnknownParameter {
                 scene,
                 name: key.to_owned(),
-                suggestion: closest(key, names()),
+                suggestion: closest_name(key, names()),
                 known: names().collect(),
             });
         };
