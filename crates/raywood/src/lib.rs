@@ -27,6 +27,7 @@
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be: rays, [options](Tlas::intersect_with), [all hits](Tlas::all_hits),
 //!   [closest points](Tlas::closest_point) and [overlaps](Tlas::overlapping) go through them.
+//! - [`Bvh64`] takes meshes in double precision, where single precision cannot tell points apart.
 //! - What moves need not be built anew: [`Bvh::refit`] makes new boxes, [`DynamicBvh`] looks after the quality of the tree as well, and [`Tlas::update`] does for instances.
 //! - A tree can be [saved](Bvh::save) with its mesh and [loaded](Bvh::load) where it lies in memory, or [with more](SavedTree): a mapped file of a million triangles answers its first ray within milliseconds.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
