@@ -350,7 +350,8 @@ impl Planting<'_> {
             }
             let before_eye = z > 8.0 && (-13.0..7.0).contains(&x);
             if shore > 0.93 && bed > 0.05 && !before_eye {
-                self.put(Sort::Reeds, [x, z], self.rng.clone().between(0.8, 1.2), Rgb::ONE);
+                let size = self.rng.between(0.8, 1.2);
+                self.put(Sort::Reeds, [x, z], size, Rgb::ONE);
             } else if shore < 0.95 && bed < -0.16 && z > -20.0 {
                 self.put(Sort::Lilies, [x, z], 1.0, Rgb::ONE);
             } else if shore > 0.97 && self.rng.unit() < 0.14 {
