@@ -151,3 +151,18 @@ impl Instances {
         self.placed.iter().map(around).collect()
     }
 }
+
+/// Triangles that are fewer are copied, however often they are shown.
+const FEWEST_TRIANGLES: u64 = 128;
+
+/// Triangles are copied if their copies add no more than so many.
+const MOST_ADDED: u64 = 1 << 16;
+
+/// Whether triangles that are shown at many places should become an object that instances show, rather than be copied.
+///
+/// Copies are traced faster: their triangles lie in one tree, and no ray is taken from one space into another. Instances take no memory for triangles and no time to build trees over them. So
+/// triangles are shared where copies would add many, unless they are so few that an instance of them takes as much memory as they do and the way into it as much time as testing them.
+pub(crate) fn is_worth_sharing(triangles: u64, places: u64) -> bool {
+    let added = triangles.saturating_mul(places.saturating_sub(1));
+    triangles >= FEWEST_TRIANGLES && added > MOST_ADDED
+}

@@ -14,6 +14,7 @@ mod light;
 mod load;
 mod material;
 mod mesh;
+mod mesh_join;
 mod metallic_roughness;
 mod noise;
 mod pattern;

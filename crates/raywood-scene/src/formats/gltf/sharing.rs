@@ -1,20 +1,11 @@
-//! Which meshes become objects that instances show, and which are copied.
-//!
-//! Copies are traced faster: their triangles lie in one tree, and no ray is taken from one space into another. Instances take no memory for triangles and no time to build trees over them. So a
-//! mesh is shared where copies would add many triangles ([`MOST_ADDED`]), unless it is so small ([`FEWEST_TRIANGLES`]) that an instance of it takes as much memory as its triangles and
-//! the way into it as much time as testing them. A place that flattens the mesh gets a copy in any case, for there is no way back from there.
+//! Which meshes become objects that instances show, and which are copied. A place that flattens the mesh gets a copy in any case, for there is no way back from there.
 
 use super::document::Document;
 use super::node::Instance;
 use super::primitive::{Reads, size};
 use super::transform::Transform;
 use crate::error::LoadError;
-
-/// A mesh with fewer triangles is copied, however often it is shown.
-const FEWEST_TRIANGLES: u64 = 128;
-
-/// A mesh is copied if its copies add no more than so many triangles.
-const MOST_ADDED: u64 = 1 << 16;
+use crate::instances::is_worth_sharing;
 
 /// What nodes show.
 pub(super) struct Shared<'a> {
@@ -41,8 +32,7 @@ pub(super) fn share<'a>(
     let mut is_shared = vec![false; uses.len()];
     for (mesh, &uses) in uses.iter().enumerate().filter(|(_, uses)| **uses > 1) {
         let triangles = size(document, mesh, reads)?.triangles;
-        let added = triangles.saturating_mul(uses - 1);
-        is_shared[mesh] = triangles >= FEWEST_TRIANGLES && added > MOST_ADDED;
+        is_shared[mesh] = is_worth_sharing(triangles, uses);
     }
 
     let mut numbers = vec![None; uses.len()];
