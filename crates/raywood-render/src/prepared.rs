@@ -139,7 +139,7 @@ impl<'a> PreparedScene<'a> {
     /// What a ray sees that hits nothing; its direction is of unit length.
     #[inline(always)]
     pub(crate) fn background(&self, direction: Vec3) -> Rgb {
-        match &self.environment {
+        match self.environment() {
             None => self.scene.background.color(direction.dot(self.axes.up)),
             Some(panorama) => in_panorama(panorama, self.axes.to_local(direction)),
         }
@@ -271,14 +271,15 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    /// Puts a panorama around the scene, in place of its background, or takes it away.
+    /// Puts a panorama around the scene, in place of its own panorama or background; `None` leaves it these.
     pub fn set_environment(&mut self, environment: Option<Environment>) {
         self.environment = environment;
     }
 
     /// The panorama around the scene, if there is one.
+    #[inline(always)]
     pub(crate) fn environment(&self) -> Option<&Environment> {
-        self.environment.as_ref()
+        self.environment.as_ref().or(self.scene.environment.as_ref())
     }
 
     /// Whether any surface may be textured.

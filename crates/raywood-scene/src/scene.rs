@@ -2,7 +2,7 @@
 
 use raywood::{Aabb, MeshPart, Spheres, Vec3};
 
-use crate::{Camera, Instances, Light, Material, MaterialId, Mesh, Rgb, TextureImage};
+use crate::{Camera, Environment, Instances, Light, Material, MaterialId, Mesh, Rgb, TextureImage};
 
 /// Surfaces, materials, lights and cameras.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +29,8 @@ pub struct Scene {
     pub up: Option<Vec3>,
     /// What rays see that hit nothing.
     pub background: Background,
+    /// The panorama around the scene, in place of the background.
+    pub environment: Option<Environment>,
     /// What was left out or mended while loading, a line each, for the user to read.
     pub warnings: Vec<String>,
 }

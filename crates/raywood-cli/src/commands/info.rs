@@ -131,6 +131,9 @@ fn as_text(
         let bytes: usize = scene.images.iter().map(|image| image.bytes()).sum();
         line("images", &format!("{}, {:.1} MB", scene.images.len(), bytes as f64 / 1e6));
     }
+    if let Some(panorama) = &scene.environment {
+        line("panorama", &format!("{} x {} texels", panorama.width(), panorama.height()));
+    }
     line("lights", &scene.lights.len().to_string());
     for light in &scene.lights {
         line(

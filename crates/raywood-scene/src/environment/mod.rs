@@ -56,6 +56,11 @@ impl Environment {
         self.height
     }
 
+    /// All texels, row after row.
+    pub(crate) fn texels(&self) -> &[Rgb] {
+        &self.texels
+    }
+
     /// The texel in a column and a row, which must exist.
     fn texel(&self, column: u32, row: u32) -> Rgb {
         self.texels[row as usize * self.width as usize + column as usize]

@@ -1,5 +1,6 @@
 //! Scenes saved with the tree over their surfaces: a [saved tree](raywood::SavedTree) with sections for what a scene has besides.
 
+mod environment;
 mod images;
 mod scene;
 mod stored;
@@ -10,7 +11,7 @@ use std::path::Path;
 use raywood::{Bvh, SavedGeometry, SavedTree};
 
 use crate::error::{LoadError, Place};
-use crate::{Material, Mesh, Scene};
+use crate::{Environment, Material, Mesh, Scene};
 use scene::Small;
 use stored::{Reader, Stored};
 
@@ -26,6 +27,8 @@ const TEXTURE_COORDINATES: [&str; 2] = ["texture-coords-0", "texture-coords-1"];
 const TANGENTS: &str = "tangents";
 /// What textures name.
 const IMAGES: &str = "images";
+/// The panorama around the scene.
+const ENVIRONMENT: &str = "environment";
 /// The material of each triangle.
 const MATERIALS: &str = "materials";
 /// The material of each sphere.
@@ -62,6 +65,7 @@ pub fn save_scene<G: SavedGeometry>(
         cameras,
         up,
         background,
+        environment,
         warnings: _,
         instances,
     } = scene;
@@ -84,6 +88,7 @@ pub fn save_scene<G: SavedGeometry>(
         (TEXTURE_COORDINATES[1], to_bytes(second_coordinates)),
         (TANGENTS, to_bytes(tangents)),
         (IMAGES, to_bytes(images)),
+        (ENVIRONMENT, to_bytes(environment.as_slice())),
         (MATERIALS, to_bytes(of_triangles)),
         (SPHERE_MATERIALS, to_bytes(sphere_materials)),
     ];
@@ -153,6 +158,9 @@ impl SavedScene {
         scene.sphere_materials =
             values(&tree, SPHERE_MATERIALS).map_err(|f| of(SPHERE_MATERIALS, f))?;
         scene.images = values(&tree, IMAGES).map_err(|f| of(IMAGES, f))?;
+        let mut environments: Vec<Environment> =
+            values(&tree, ENVIRONMENT).map_err(|f| of(ENVIRONMENT, f))?;
+        scene.environment = environments.pop();
         Ok(Self { scene, tree })
     }
 }
