@@ -1,13 +1,17 @@
 //! What somebody meant who mistyped a name.
 
-/// The candidate that a mistyped name probably meant, if there is one: at most a third of its letters wrong.
+/// The candidate that a mistyped name probably meant, if there is one: at most a third of its letters wrong,
+/// upper or lower case. Names of more than 64 bytes are not guessed: that would take long, and nobody types them.
 pub fn closest_name<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
+    const LONGEST: usize = 64;
+    let name = name.to_lowercase();
     candidates
         .into_iter()
-        .map(|candidate| (edit_distance(&name.to_lowercase(), candidate), candidate))
+        .filter(|candidate| name.len().max(candidate.len()) <= LONGEST)
+        .map(|candidate| (edit_distance(&name, &candidate.to_lowercase()), candidate))
         .filter(|&(distance, candidate)| 3 * distance <= candidate.len().max(3))
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
@@ -40,6 +44,7 @@ mod tests {
         assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(closest_name("whited", ["hall", "whitted"]), Some("whitted"));
         assert_eq!(closest_name("Hal", ["hall", "whitted"]), Some("hall"));
+        assert_eq!(closest_name("brasS_cap", ["WOOD", "BRASS_CAPS"]), Some("BRASS_CAPS"));
         assert_eq!(closest_name("teapot", ["hall", "whitted"]), None);
     }
 }
