@@ -7,5 +7,5 @@ mod build_and_query;
 #[path = "../../crates/raywood-scene/tests/scenes/formats_support.rs"]
 mod formats_support;
 
-pub use any_bytes::{gltf, hdr, image, obj, ply, stl};
+pub use any_bytes::{gltf, hdr, image, obj, ply, scene_file, stl};
 pub use build_and_query::run as build_and_query;

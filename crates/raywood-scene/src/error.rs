@@ -22,6 +22,13 @@ pub enum Place {
     File,
     /// A line of a text file; the first is 1.
     Line(usize),
+    /// A line of a text file and a column in it, counted in characters; the first is 1.
+    Column {
+        /// The line.
+        line: usize,
+        /// The column.
+        column: usize,
+    },
     /// A byte of a binary file; the first is 0.
     Byte(usize),
     /// A value in a JSON document, such as `accessors[3].bufferView`.
@@ -67,6 +74,7 @@ impl fmt::Display for LoadError {
         match &self.place {
             Place::File => write!(f, "{file}: {message}"),
             Place::Line(line) => write!(f, "{file}:{line}: {message}"),
+            Place::Column { line, column } => write!(f, "{file}:{line}:{column}: {message}"),
             place => write!(f, "{file}: {place}: {message}"),
         }
     }
@@ -83,6 +91,7 @@ impl fmt::Display for Place {
         match self {
             Self::File => write!(f, "the file"),
             Self::Line(line) => write!(f, "line {line}"),
+            Self::Column { line, column } => write!(f, "line {line}, column {column}"),
             Self::Byte(byte) => write!(f, "byte {byte}"),
             Self::Json(path) => write!(f, "{}", one_line(path)),
         }

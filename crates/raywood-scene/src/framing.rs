@@ -5,7 +5,7 @@ use raywood::{Aabb, Vec3};
 use crate::{Axes, Camera, Light, LightKind, Rgb};
 
 /// The vertical field of view of default cameras, in degrees: that of a 50 mm lens or so, free of distortion.
-const FOV_Y: f32 = 35.0;
+pub(crate) const FOV_Y: f32 = 35.0;
 
 /// The share of the picture's width or height that the bounding box fills.
 const FILL: f64 = 0.94;

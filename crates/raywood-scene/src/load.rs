@@ -7,7 +7,7 @@ use std::path::Path;
 use raywood::TriangleMesh;
 
 use crate::error::{LoadError, Place};
-use crate::formats::{FORMATS, Format, Input};
+use crate::formats::{FORMATS, Format, Input, Nesting};
 use crate::{Material, Scene};
 
 /// How to load a file.
@@ -33,7 +33,7 @@ impl LoadOptions {
 /// where the extension is missing or unknown.
 ///
 /// What was mended or left out is said in [`Scene::warnings`]. No contents, however broken, make it panic, or allocate for more
-/// than the bytes that are really there can hold. (The copies of meshes that a glTF file asks for are bounded by number.)
+/// than the bytes that are really there can hold. (The copies of meshes that glTF and scene files ask for are bounded by number.)
 ///
 /// # Errors
 ///
@@ -49,18 +49,31 @@ pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError>
 ///
 /// As [`load_file`].
 pub fn load_bytes(path: &Path, bytes: &[u8], options: &LoadOptions) -> Result<Scene, LoadError> {
+    load_nested(path, bytes, options, &Nesting::default())
+}
+
+/// Loads a scene as [`load_bytes`] does, from a file that another one may show.
+pub(crate) fn load_nested(
+    path: &Path,
+    bytes: &[u8],
+    options: &LoadOptions,
+    nesting: &Nesting,
+) -> Result<Scene, LoadError> {
     let format = format_of(path, bytes)?;
     if bytes.is_empty() {
         let message = format!("is empty, expected {}", format.description);
         return Err(LoadError::new(path, Place::File, message));
     }
-    let mut scene = (format.load)(&Input { path, bytes, options })?;
+    let mut scene = (format.load)(&Input { path, bytes, options, nesting })?;
 
     scene.name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     if scene.materials.is_empty() {
         scene.materials.push(Material::default());
     }
-    if scene.mesh.triangles.triangles().is_empty() && scene.sphere_materials.is_empty() {
+    if !scene.spheres.as_slice().is_empty() {
+        return Ok(scene);
+    }
+    if scene.mesh.triangles.triangles().is_empty() {
         scene.warnings.push("there are no triangles to show".to_owned());
     } else if !has_area(&scene.mesh.triangles) {
         scene.warnings.push("no triangle has any area: there is nothing to see".to_owned());

@@ -53,4 +53,24 @@ impl SurfaceTextures {
         ];
         others.into_iter().flatten().chain(numbered)
     }
+
+    /// All that there are, to be changed.
+    pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Texture> {
+        let Self { color, opacity: _, opacity_map, normal, metallic_roughness, .. } = self;
+        let Self {
+            glossiness, specular_color, specular, transmission, occlusion, emission, ..
+        } = self;
+        let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
+        let others = [
+            color,
+            opacity_map,
+            metallic_roughness,
+            glossiness,
+            specular_color,
+            specular,
+            transmission,
+            emission,
+        ];
+        others.into_iter().flatten().chain(numbered)
+    }
 }

@@ -23,7 +23,7 @@ use crate::view_args::ViewArgs;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:hall
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes. Else it is builtin:terrain.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, a scene file (TOML) that puts several together, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes. Else it is builtin:terrain.
     #[arg(default_value = "builtin:terrain", hide_default_value = true)]
     scene: String,
 

@@ -24,7 +24,7 @@ use crate::scene_source::{self, Loaded};
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved before; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, a scene file (TOML) that puts several together, or a scene saved before; `raywood scenes` lists the built-in scenes.
     scene: String,
 
     /// The saved scene

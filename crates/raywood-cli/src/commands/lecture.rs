@@ -21,7 +21,7 @@ use crate::simd_args::SimdArgs;
 pub(crate) struct Args {
     /// Model file or built-in scene, else several built-in ones
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes. Some experiments make their own scenes as well, because they need such of many sizes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, a scene file (TOML) that puts several together, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes. Some experiments make their own scenes as well, because they need such of many sizes.
     scene: Option<String>,
 
     /// Write a page with all tables and charts

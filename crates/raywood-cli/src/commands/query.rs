@@ -83,7 +83,7 @@ at all."#;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:hall
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, a scene file (TOML) that puts several together, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(value_name = "MESH")]
     scene: String,
 

@@ -12,6 +12,7 @@ mod path;
 mod references;
 mod rendering;
 mod sampling;
+mod scene_files;
 mod textures;
 mod view;
 mod whitted;

@@ -1,6 +1,8 @@
 //! The file formats, one module each, and the registry that names them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
 
 use crate::error::LoadError;
 use crate::{LoadOptions, Scene};
@@ -15,6 +17,7 @@ mod ply;
 mod polygon;
 mod raw_mesh;
 mod rwood;
+mod scene_file;
 mod stl;
 mod text;
 
@@ -35,11 +38,21 @@ pub struct Format {
 
 /// All formats. To add one: write its module, and add its line here.
 pub const FORMATS: &[Format] =
-    &[obj::FORMAT, gltf::FORMAT, ply::FORMAT, stl::FORMAT, rwood::FORMAT];
+    &[obj::FORMAT, gltf::FORMAT, ply::FORMAT, stl::FORMAT, rwood::FORMAT, scene_file::FORMAT];
 
 /// A file to load: its name (for messages, and to find the files it names), its bytes, and how to load it.
 pub(crate) struct Input<'a> {
     pub(crate) path: &'a Path,
     pub(crate) bytes: &'a [u8],
     pub(crate) options: &'a LoadOptions,
+    pub(crate) nesting: &'a Nesting,
+}
+
+/// Which files are being loaded because others show them.
+#[derive(Debug, Default)]
+pub(crate) struct Nesting {
+    /// The scene files that are being read, each shown by the one before.
+    pub(crate) open: Vec<PathBuf>,
+    /// How many files there were so far, shared by all of them.
+    pub(crate) files: Arc<AtomicUsize>,
 }

@@ -39,6 +39,11 @@ pub fn gltf(bytes: &[u8]) {
     FOLDER.with(|folder| survives(folder, name, bytes));
 }
 
+/// A scene file.
+pub fn scene_file(bytes: &[u8]) {
+    FOLDER.with(|folder| survives(folder, "x.toml", bytes));
+}
+
 /// The image of textures: of every kind in a glTF file, and as colours, heights and cut-outs of an MTL file.
 pub fn image(bytes: &[u8]) {
     let materials = r#""images":[{"bufferView":5,"mimeType":"image/png"}],"textures":[{"source":0}],
@@ -79,7 +84,7 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
-    use super::{gltf, hdr, image, obj, ply, stl};
+    use super::{gltf, hdr, image, obj, ply, scene_file, stl};
     use crate::formats_support::{Random, jpeg, png};
 
     /// What feeds a format with bytes.
@@ -88,6 +93,27 @@ mod tests {
     /// A panorama of two rows, in runs.
     const PANORAMA: &[u8] = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n\
         \x02\x02\x00\x08\x88\x01\x88\x02\x88\x03\x88\x80\x02\x02\x00\x08\x88\x01\x88\x02\x88\x03\x88\x80";
+
+    /// A scene file with a key of each kind.
+    const SCENE_FILE: &[u8] = br##"up = [0, 1, 0]
+background = { zenith = 1, horizon = [0, 1, 0.5], nadir = "#102030" }
+[material.gold]
+metallic = 1
+[[sphere]]
+center = [0, 1.5, -2e1]
+radius = 1
+material = { transmission = 1, absorption = 2 }
+[[model]]
+file = "builtin:whitted"
+rotate = { axis = [0, 0, 1], degrees = 90 }
+override.mirror = "gold"
+instance = [{ scale = 2 }, { matrix = [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]] }]
+[[light]]
+kind = "spot"
+position = [0, 0, 0]
+target = [1, 0, 0]
+intensity = 1
+"##;
 
     /// Images of both formats.
     fn images() -> [Vec<u8>; 2] {
@@ -121,9 +147,14 @@ mod tests {
     }
 
     #[test]
-    fn images_and_panoramas_that_are_cut_or_changed_do_no_harm() {
+    fn images_panoramas_and_scene_files_that_are_cut_or_changed_do_no_harm() {
         let [png, jpeg] = images();
-        let samples: [(Vec<u8>, Feed); 3] = [(png, image), (jpeg, image), (PANORAMA.to_vec(), hdr)];
+        let samples: [(Vec<u8>, Feed); 4] = [
+            (png, image),
+            (jpeg, image),
+            (PANORAMA.to_vec(), hdr),
+            (SCENE_FILE.to_vec(), scene_file),
+        ];
         let mut random = Random(3);
         for (sample, feed) in samples {
             feed(&sample);

@@ -62,7 +62,7 @@ fn what_is_no_file() {
     let error = error_at("picture.jpeg");
     assert!(
         error.ends_with(
-            "has the unknown extension .jpeg; the known ones are .obj, .glb, .gltf, .ply, .stl, .rwood"
+            "has the unknown extension .jpeg; the known ones are .obj, .glb, .gltf, .ply, .stl, .rwood, .toml"
         ),
         "{error}"
     );

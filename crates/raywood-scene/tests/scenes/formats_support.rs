@@ -96,7 +96,8 @@ pub fn check_scene(scene: &Scene) {
         assert!(length == 0.0 || (length - 1.0).abs() < 1e-5, "{normal:?}");
     }
     assert!(mesh.colors.iter().all(|c| c.is_finite() && c.x >= 0.0));
-    assert!(!triangles.is_empty() || !scene.warnings.is_empty());
+    let is_empty = triangles.is_empty() && scene.sphere_materials.is_empty();
+    assert!(!is_empty || !scene.warnings.is_empty());
     for warning in &scene.warnings {
         assert!(!warning.chars().any(char::is_control), "{warning:?} is not one line");
     }

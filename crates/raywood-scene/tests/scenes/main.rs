@@ -9,4 +9,6 @@ mod formats_support;
 mod formats_text;
 mod instances;
 mod saved;
+mod scene_file_errors;
+mod scene_files;
 mod texture_files;

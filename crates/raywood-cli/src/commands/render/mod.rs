@@ -32,7 +32,7 @@ use sampling_args::SamplingArgs;
 pub(crate) struct Args {
     /// Model file, or built-in scene such as builtin:whitted
     ///
-    /// Files may be OBJ, glTF, GLB, PLY or STL, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
+    /// Files may be OBJ, glTF, GLB, PLY or STL, a scene file (TOML) that puts several together, or a scene saved by `raywood build`; `raywood scenes` lists the built-in scenes.
     #[arg(default_value = "builtin:hall", hide_default_value = true)]
     scene: String,
 
