@@ -1,7 +1,9 @@
 //! A material in the form that shading reads.
 
 use raywood::Vec3;
-use raywood_scene::{Material, Pattern, Rgb};
+use raywood_scene::{Clearcoat, Material, Pattern, Rgb, Sheen};
+
+use crate::bsdf::COAT_REFLECTANCE;
 
 /// What shading reads of a [`Material`]: the same numbers, made safe (in range, not NaN), with the questions asked at
 /// every hit already answered.
@@ -18,6 +20,13 @@ pub(crate) struct SurfaceMaterial {
     pub(crate) ior: f32,
     pub(crate) absorption: Vec3,
     pub(crate) emission: Rgb,
+    /// What lies over it; without strength or colour nothing.
+    pub(crate) coat: Clearcoat,
+    pub(crate) sheen: Sheen,
+    /// What a coat mirrors looked at straight on and from its edge, as far as it is a perfect mirror.
+    pub(crate) coat_mirror: [f32; 2],
+    /// By how much the index of refraction differs for red and for blue light.
+    pub(crate) dispersion: f32,
     /// Whether any light gets through.
     pub(crate) transmissive: bool,
     /// Whether the surface mirrors as `mirror` says.
@@ -46,6 +55,10 @@ impl SurfaceMaterial {
             ior: material.ior,
             absorption: positive(material.absorption),
             emission: positive(material.emission),
+            coat: material.clearcoat.unwrap_or_default(),
+            sheen: material.sheen.unwrap_or_default(),
+            coat_mirror: [0.0; 2],
+            dispersion: 0.0,
             transmissive: false,
             mirrors: false,
             shiny: false,
@@ -54,13 +67,22 @@ impl SurfaceMaterial {
             ambient: 1.0,
         };
         safe.make_safe();
+        safe.make_layers_safe();
+        // No index is less than 1, that of the air around.
+        let spread = (safe.ior - 1.0) * finite_or(material.dispersion, 0.0).max(0.0) / 40.0;
+        safe.dispersion = spread.clamp(0.0, (safe.ior - 1.0).max(0.0));
         safe
+    }
+
+    /// The indices of refraction for red, green and blue light.
+    #[inline]
+    pub(crate) fn iors(&self) -> [f32; 3] {
+        [self.ior - self.dispersion, self.ior, self.ior + self.dispersion]
     }
 
     /// Brings numbers into their range and answers the questions that follow from them.
     #[inline(always)]
     pub(crate) fn make_safe(&mut self) {
-        let share = |color: Rgb| positive(color).min(Rgb::ONE);
         self.diffuse = positive(self.diffuse);
         self.transmission = share(self.transmission);
         self.transmissive = self.transmission.max_element() > 0.0;
@@ -72,11 +94,31 @@ impl SurfaceMaterial {
         let ior = finite_or(self.ior, 1.0);
         self.ior = if ior > 0.0 { ior } else { 1.0 };
     }
+
+    /// The same of the coat and the sheen.
+    #[inline]
+    pub(crate) fn make_layers_safe(&mut self) {
+        let unit = |x: f32| finite_or(x, 0.0).clamp(0.0, 1.0);
+        self.coat =
+            Clearcoat { strength: unit(self.coat.strength), roughness: unit(self.coat.roughness) };
+        self.sheen.color = share(self.sheen.color);
+        self.sheen.roughness = unit(self.sheen.roughness);
+        // As much of it is mirror as of anything that is not metal.
+        let smooth = (1.0 - self.coat.roughness / 0.25).max(0.0);
+        let mirror = smooth * self.coat.strength;
+        self.coat_mirror = [COAT_REFLECTANCE * mirror, mirror];
+    }
 }
 
 #[inline(always)]
 fn finite_or(x: f32, other: f32) -> f32 {
     if x.is_finite() { x } else { other }
+}
+
+/// Each channel from 0 to 1.
+#[inline(always)]
+fn share(color: Rgb) -> Rgb {
+    positive(color).min(Rgb::ONE)
 }
 
 #[inline(always)]

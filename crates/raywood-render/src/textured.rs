@@ -21,10 +21,15 @@ pub(crate) enum Slot {
     SpecularColor,
     Specular,
     Transmission,
+    // Those of layers come last.
+    Clearcoat,
+    ClearcoatRoughness,
+    SheenColor,
+    SheenRoughness,
 }
 
 /// What all textures of a material show at a point: ones where there is none.
-pub(crate) type Shown = [[f32; 4]; 10];
+pub(crate) type Shown = [[f32; 4]; 14];
 
 /// A texture with its image.
 pub(crate) struct Layer<'a> {
@@ -40,6 +45,11 @@ impl Layer<'_> {
     #[inline(always)]
     pub(crate) fn is_color(&self) -> bool {
         matches!(self.slot, Slot::Color | Slot::Emission | Slot::OpacityMap)
+    }
+
+    fn is_of_coat_or_sheen(&self) -> bool {
+        use Slot::{Clearcoat, ClearcoatRoughness, SheenColor, SheenRoughness};
+        matches!(self.slot, Clearcoat | ClearcoatRoughness | SheenColor | SheenRoughness)
     }
 
     /// Whether where one is read the other is too.
@@ -60,6 +70,8 @@ pub(crate) struct TexturedMaterial<'a> {
     pub(crate) layers: Vec<Layer<'a>>,
     /// Whether it is not all there everywhere.
     pub(crate) is_perforated: bool,
+    /// Whether its coat or its sheen has a texture.
+    has_textured_layers: bool,
 }
 
 impl<'a> TexturedMaterial<'a> {
@@ -77,6 +89,10 @@ impl<'a> TexturedMaterial<'a> {
             (Slot::SpecularColor, textures.specular_color.as_ref()),
             (Slot::Specular, textures.specular.as_ref()),
             (Slot::Transmission, textures.transmission.as_ref()),
+            (Slot::Clearcoat, textures.clearcoat.as_ref()),
+            (Slot::ClearcoatRoughness, textures.clearcoat_roughness.as_ref()),
+            (Slot::SheenColor, textures.sheen_color.as_ref()),
+            (Slot::SheenRoughness, textures.sheen_roughness.as_ref()),
         ];
         let with_image = |(slot, texture): (Slot, Option<&'a Texture>)| {
             let image = images.get(texture?.image as usize)?;
@@ -87,7 +103,8 @@ impl<'a> TexturedMaterial<'a> {
             layers[second].follows = layers[second].is_read_as(&layers[second - 1]);
         }
         let is_perforated = is_perforated(textures, &layers);
-        Some(Self { material, textures, layers, is_perforated })
+        let has_textured_layers = layers.iter().any(Layer::is_of_coat_or_sheen);
+        Some(Self { material, textures, layers, is_perforated, has_textured_layers })
     }
 
     /// The texture that gives normals, and by how much it bends them.
@@ -109,6 +126,19 @@ impl<'a> TexturedMaterial<'a> {
         self.material.emission * mean
     }
 
+    /// Ones, in all places that [`apply`](Self::apply) looks at.
+    #[inline(always)]
+    pub(crate) fn clear(&self, shown: &mut [Shown]) {
+        if self.has_textured_layers {
+            shown.fill([[1.0; 4]; _]);
+        } else {
+            // Few materials have more.
+            for shown in shown {
+                shown[..Slot::Clearcoat as usize].fill([1.0; 4]);
+            }
+        }
+    }
+
     /// Makes of the material what it is where its textures show that, and vertices have a colour; tells what it is made of, if its description by metal
     /// and roughness says so.
     #[inline(always)]
@@ -123,6 +153,14 @@ impl<'a> TexturedMaterial<'a> {
         found.emission = found.emission * rgb(of(Slot::Emission));
         if let Some((_, strength)) = &self.textures.occlusion {
             found.ambient = 1.0 + strength * (of(Slot::Occlusion)[0] - 1.0);
+        }
+
+        if self.has_textured_layers {
+            found.coat.strength *= of(Slot::Clearcoat)[0];
+            found.coat.roughness *= of(Slot::ClearcoatRoughness)[1];
+            found.sheen.color = found.sheen.color * rgb(of(Slot::SheenColor));
+            found.sheen.roughness *= of(Slot::SheenRoughness)[3];
+            found.make_layers_safe();
         }
 
         let tint = rgb(of(Slot::Color)) * vertex_color;

@@ -2,7 +2,7 @@
 
 use raywood::Vec3;
 
-use crate::{MetallicRoughness, Pattern, Rgb, SurfaceTextures};
+use crate::{Clearcoat, MetallicRoughness, Pattern, Rgb, Sheen, SurfaceTextures};
 
 /// The number of a material in its scene.
 pub type MaterialId = u32;
@@ -40,6 +40,13 @@ pub struct Material {
     /// What it is made of, where a file says so in these terms: diffuse light, highlight, mirror and transmission follow from it, point by point
     /// where textures modulate it.
     pub metallic_roughness: Option<MetallicRoughness>,
+    /// The clear coat over it, if there is one.
+    pub clearcoat: Option<Clearcoat>,
+    /// The sheen of fibres on it, if there are any. Shown by a path tracer alone, where no coat covers it.
+    pub sheen: Option<Sheen>,
+    /// By how much glass parts light into colours: 20 over its Abbe number (`KHR_materials_dispersion`), 0 for not at all. The index of refraction, which `ior` is for green light, is less for red and more for blue,
+    /// by `(ior - 1) * dispersion / 40` each. Shown by a path tracer alone.
+    pub dispersion: f32,
     /// What varies over the surface, if anything does.
     pub textures: Option<Box<SurfaceTextures>>,
 }
@@ -59,6 +66,9 @@ impl Default for Material {
             absorption: Vec3::ZERO,
             emission: Rgb::ZERO,
             metallic_roughness: None,
+            clearcoat: None,
+            sheen: None,
+            dispersion: 0.0,
             textures: None,
         }
     }

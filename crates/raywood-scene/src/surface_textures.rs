@@ -29,6 +29,14 @@ pub struct SurfaceTextures {
     pub transmission: Option<Texture>,
     /// Red tells how much of the ambient light arrives, weighted by the number: at 0 all does.
     pub occlusion: Option<(Texture, f32)>,
+    /// Red multiplies the strength of the clear coat.
+    pub clearcoat: Option<Texture>,
+    /// Green multiplies how rough the clear coat is.
+    pub clearcoat_roughness: Option<Texture>,
+    /// Multiplies the colour of the sheen.
+    pub sheen_color: Option<Texture>,
+    /// Its alpha multiplies how rough the sheen is.
+    pub sheen_roughness: Option<Texture>,
     /// Multiplies the light sent out.
     pub emission: Option<Texture>,
 }
@@ -40,6 +48,7 @@ impl SurfaceTextures {
         let Self {
             glossiness, specular_color, specular, transmission, occlusion, emission, ..
         } = self;
+        let Self { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
         let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
         let others = [
             color,
@@ -49,6 +58,10 @@ impl SurfaceTextures {
             specular_color,
             specular,
             transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
             emission,
         ];
         others.into_iter().flatten().chain(numbered)
@@ -60,6 +73,7 @@ impl SurfaceTextures {
         let Self {
             glossiness, specular_color, specular, transmission, occlusion, emission, ..
         } = self;
+        let Self { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
         let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
         let others = [
             color,
@@ -69,8 +83,44 @@ impl SurfaceTextures {
             specular_color,
             specular,
             transmission,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
             emission,
         ];
         others.into_iter().flatten().chain(numbered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// None is passed over, neither when they are read nor when they are changed.
+    #[test]
+    fn all_textures_are_among_all() {
+        let texture = Some(Texture::new(1));
+        let numbered = texture.map(|texture| (texture, 1.0));
+        let mut textures = SurfaceTextures {
+            color: texture,
+            opacity: None,
+            opacity_map: texture,
+            normal: numbered,
+            metallic_roughness: texture,
+            glossiness: texture,
+            specular_color: texture,
+            specular: texture,
+            transmission: texture,
+            occlusion: numbered,
+            clearcoat: texture,
+            clearcoat_roughness: texture,
+            sheen_color: texture,
+            sheen_roughness: texture,
+            emission: texture,
+        };
+        assert_eq!(textures.all().count(), 14);
+        textures.all_mut().for_each(|texture| texture.image += 1);
+        assert_eq!(textures.all().filter(|texture| texture.image == 2).count(), 14);
     }
 }

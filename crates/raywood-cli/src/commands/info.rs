@@ -1,7 +1,7 @@
 //! `raywood info`: what is in a scene, and what its structure is like.
 
 use raywood::{Geometry, SimdLevel, StructureKind, StructureStats};
-use raywood_scene::{LightKind, Material, Rgb, Scene};
+use raywood_scene::{Clearcoat, LightKind, Material, Rgb, Scene};
 use serde_json::{Value, json};
 
 use super::thread_pool;
@@ -199,6 +199,15 @@ fn describe(material: &Material) -> String {
             material.shininess
         ));
     }
+    if let Some(Clearcoat { strength, roughness }) = material.clearcoat {
+        parts.push(format!("clear coat {strength:.2} roughness {roughness:.2}"));
+    }
+    if let Some(sheen) = material.sheen {
+        parts.push(format!("sheen {} roughness {:.2}", color(sheen.color), sheen.roughness));
+    }
+    if material.dispersion > 0.0 {
+        parts.push(format!("dispersion {:.2}", material.dispersion));
+    }
     if parts.is_empty() { "black".to_owned() } else { parts.join(", ") }
 }
 
@@ -241,6 +250,9 @@ fn materials(scene: &Scene) -> Vec<Value> {
             "name": m.name, "diffuse": m.diffuse.to_array(), "mirror": m.mirror.to_array(),
             "transmission": m.transmission.to_array(), "ior": m.ior, "absorption": m.absorption.to_array(),
             "specular": m.specular.to_array(), "shininess": m.shininess, "emission": m.emission.to_array(),
+            "clearcoat": m.clearcoat.map(|coat| json!({ "strength": coat.strength, "roughness": coat.roughness })),
+            "sheen": m.sheen.map(|sheen| json!({ "color": sheen.color.to_array(), "roughness": sheen.roughness })),
+            "dispersion": m.dispersion,
         })
     };
     scene.materials.iter().map(one).collect()

@@ -37,7 +37,17 @@ impl Albedo {
     }
 
     #[inline]
-    fn blend(self, other: Self, share: f32) -> Self {
+    pub(crate) fn times(self, factor: f32) -> Self {
+        Self { white: factor * self.white, grazing: factor * self.grazing }
+    }
+
+    #[inline]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { white: self.white + other.white, grazing: self.grazing + other.grazing }
+    }
+
+    #[inline]
+    pub(crate) fn blend(self, other: Self, share: f32) -> Self {
         let blend = |a: f32, b: f32| a + share * (b - a);
         Self { white: blend(self.white, other.white), grazing: blend(self.grazing, other.grazing) }
     }
@@ -118,6 +128,21 @@ pub(crate) fn alpha_of(row: usize) -> f32 {
 /// How many facets stand for all.
 pub(crate) const FACETS: u32 = 256;
 
+/// Facets that are seen from `wo`: the cosine of where each mirrors light from, and what comes of that; the mean over all [`FACETS`] is the albedo. Those
+/// that mirror other facets are left out.
+pub(crate) fn facets(alpha: f32, wo: Vec3) -> impl Iterator<Item = (f32, Albedo)> {
+    let ggx = Ggx { alpha };
+    (0..FACETS).filter_map(move |index| {
+        let h = ggx.sample_visible(wo, PathSamples::seeded([0, 0], index, 0).pair(0));
+        let wi = 2.0 * wo.dot(h) * h - wo;
+        (wi.z > 0.0).then(|| {
+            let white = ggx.masking_shadowing(wo, wi) / ggx.masking(wo);
+            let grazing = white * (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
+            (wi.z, Albedo { white, grazing })
+        })
+    })
+}
+
 /// A row for each roughness; made when it is first asked for, in some milliseconds.
 static TABLE: LazyLock<Vec<AlbedoRow>> =
     LazyLock::new(|| (0..ROUGHNESSES).map(albedo_row).collect());
@@ -128,17 +153,8 @@ fn albedo_row(row: usize) -> AlbedoRow {
             let cosine = column as f32 / (COSINES - 1) as f32;
             return Albedo { white: 1.0, grazing: (1.0 - cosine).powi(5) };
         }
-        let (ggx, wo) = (Ggx { alpha: alpha_of(row) }, direction(column));
-        let mut sum = Albedo::default();
-        for index in 0..FACETS {
-            let h = ggx.sample_visible(wo, PathSamples::seeded([0, 0], index, 0).pair(0));
-            let wi = 2.0 * wo.dot(h) * h - wo;
-            if wi.z > 0.0 {
-                let share = ggx.masking_shadowing(wo, wi) / ggx.masking(wo);
-                sum.white += share;
-                sum.grazing += share * (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
-            }
-        }
+        let sum = facets(alpha_of(row), direction(column))
+            .fold(Albedo::default(), |sum, (_, mirrored)| sum.plus(mirrored));
         let share = 1.0 / FACETS as f32;
         Albedo { white: (share * sum.white).min(1.0), grazing: share * sum.grazing }
     };

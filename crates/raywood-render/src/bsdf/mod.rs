@@ -4,12 +4,16 @@
 //! is looked at from, `wi` where it comes from; both are of unit length and point away from the surface.
 
 mod albedo;
+mod charlie;
 pub(crate) mod frame;
 mod ggx;
 mod glass;
 mod glass_table;
+mod layer;
+mod layer_table;
 mod opaque;
 mod sample;
+mod stack;
 mod substance;
 #[cfg(test)]
 mod tests;
@@ -19,6 +23,7 @@ use raywood_scene::Rgb;
 
 use glass::Glass;
 pub(crate) use glass_table::GlassTable;
+pub(crate) use layer::COAT_REFLECTANCE;
 use opaque::Opaque;
 pub(crate) use sample::{Density, Scattered};
 pub(crate) use substance::{Substance, straight_share};

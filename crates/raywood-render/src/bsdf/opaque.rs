@@ -3,17 +3,20 @@
 //! A metal is a rough mirror. Anything else is a body that scatters light in all directions, under a rough and colourless mirror. The facets of both
 //! are those of [`Ggx`] and mirror by Schlick's formula. What facets lose into each other comes back in all directions, coloured by
 //! every reflection (Kulla and Conty 2017); the body has what the mirror leaves it, on the way in and on the way out, so that nothing is lost
-//! and light may run either way (Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001).
+//! and light may run either way (Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", 2001). Over all that there may
+//! be [layers](super::layer), which share in light before.
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
 use raywood::Vec3;
 use raywood_scene::{Rgb, luminance};
 
-use super::albedo::{Albedo, Albedos, SMOOTHEST};
+use super::albedo::{Albedo, SMOOTHEST};
 use super::frame::cosine_hemisphere;
 use super::ggx::Ggx;
+use super::layer::{Coat, Sheen};
 use super::sample::{Density, Scattered};
+use super::stack::{Shares, Stack};
 use crate::fresnel::schlick;
 
 /// What an opaque surface is made of.
@@ -27,6 +30,10 @@ pub(crate) struct OpaqueSurface {
     pub(crate) reflectance: Option<Rgb>,
     /// How rough the mirror is: the alpha of [`Ggx`]. Smooth below [`SMOOTHEST`].
     pub(crate) alpha: f32,
+    /// A clear coat, if there is one.
+    pub(crate) coat: Option<Coat>,
+    /// The sheen of fibres, if there are any, where no coat is.
+    pub(crate) sheen: Option<Sheen>,
 }
 
 /// An opaque surface looked at from a direction.
@@ -36,14 +43,17 @@ pub(crate) struct Opaque {
     surface: OpaqueSurface,
     reflectance: Rgb,
     ggx: Ggx,
-    albedos: Albedos,
-    /// What the mirror sends towards `wo` of light from all sides.
-    seen: Albedo,
+    stack: Stack,
+    /// What the layers and the mirror send towards `wo` of light from all sides.
+    seen: Shares,
+    /// What they send in the mean over all directions.
+    mean: Shares,
     /// Of both materials the colour of light that was mirrored several times, and of the body.
     multiple: Rgb,
     body: Body,
-    /// The probability that a direction is chosen as the mirror has it.
+    /// The probabilities that a direction is chosen as the mirror has it, and as either layer has it.
     mirror_share: f32,
+    layer_shares: [f32; 2],
 }
 
 /// The body below a mirror.
@@ -58,39 +68,57 @@ struct Body {
 
 impl Opaque {
     pub(crate) fn new(surface: OpaqueSurface, wo: Vec3) -> Self {
-        let OpaqueSurface { base, metallic, reflectance, alpha } = surface;
+        let OpaqueSurface { base, metallic, reflectance, alpha, coat, sheen } = surface;
         let has_mirror = reflectance.is_some() || metallic > 0.0;
-        let albedos = Albedos::of_roughness(alpha);
-        let seen = albedos.at(wo.z);
+        let stack = Stack::new(alpha, coat, sheen);
+        let (seen, mean) = (stack.at(wo.z), stack.mean());
+        let bare_mean = stack.mirror.mean();
         let f0 = reflectance.unwrap_or(Rgb::ZERO);
-        let coat = |albedo: Albedo, multiple: Rgb| match reflectance {
-            Some(f0) => albedo.of(f0) + (1.0 - albedo.white) * multiple,
-            None => Rgb::ZERO,
+        // What does not reach the body.
+        let above = |shares: Shares, multiple: Rgb| match reflectance {
+            Some(f0) => shares.mirror.of(f0) + shares.lost() * multiple + Rgb::splat(shares.layers),
+            None => Rgb::splat(shares.layers),
         };
 
         let of_coat = match reflectance {
-            Some(f0) => multiple_color(f0, albedos.mean()),
+            Some(f0) => multiple_color(f0, bare_mean),
             None => Rgb::ZERO,
         };
-        let of_metal = multiple_color(base, albedos.mean());
+        let of_metal = multiple_color(base, bare_mean);
         let multiple = metallic * of_metal + (1.0 - metallic) * of_coat;
-        let left = (Rgb::ONE - coat(albedos.mean(), of_coat)).max(Rgb::splat(1e-6));
+        let left = (Rgb::ONE - above(mean, of_coat)).max(Rgb::splat(1e-6));
         let body = Body {
             color: (1.0 - metallic) * base,
             multiple: of_coat,
-            reaches: divide(Rgb::ONE - coat(seen, of_coat), left),
+            reaches: divide(Rgb::ONE - above(seen, of_coat), left),
         };
 
-        // Choose by how much light either sends back.
-        let metal_mirrors = metallic * seen.of(base);
-        let coat_mirrors = (1.0 - metallic) * reflectance.map_or(Rgb::ZERO, |f0| seen.of(f0));
-        let mirrored = luminance(metal_mirrors + coat_mirrors);
-        let diffuse = body.color * (Rgb::ONE - coat(seen, of_coat));
-        let scattered = luminance(diffuse + (1.0 - seen.white) * multiple);
-        let all = mirrored + scattered;
-        let mirror_share = if has_mirror && all > 0.0 { mirrored / all } else { 0.0 };
-        let ggx = Ggx { alpha };
-        Self { wo, surface, reflectance: f0, ggx, albedos, seen, multiple, body, mirror_share }
+        // Choose by how much light each sends back.
+        let metal_mirrors = metallic * seen.mirror.of(base);
+        let body_mirrors =
+            (1.0 - metallic) * reflectance.map_or(Rgb::ZERO, |f0| seen.mirror.of(f0));
+        let mirrored = luminance(metal_mirrors + body_mirrors);
+        let layers = stack.layers_brightness(wo.z);
+        let diffuse = body.color * (Rgb::ONE - above(seen, of_coat));
+        let scattered = luminance(diffuse + seen.lost() * multiple);
+        let all = mirrored + scattered + layers[0] + layers[1];
+        let share = |part: f32| if all > 0.0 { part / all } else { 0.0 };
+        let mirror_share = if has_mirror { share(mirrored) } else { 0.0 };
+        let layer_shares = layers.map(share);
+        let (reflectance, ggx) = (f0, Ggx { alpha });
+        Self {
+            wo,
+            surface,
+            reflectance,
+            ggx,
+            stack,
+            seen,
+            mean,
+            multiple,
+            body,
+            mirror_share,
+            layer_shares,
+        }
     }
 
     /// Whether the mirror is perfect.
@@ -114,22 +142,31 @@ impl Opaque {
         if wi.z <= 0.0 {
             return Rgb::ZERO;
         }
-        let from = self.albedos.at(wi.z);
+        let from = self.stack.at(wi.z);
         let Body { color, multiple, reaches } = self.body;
         let arrives = match self.surface.reflectance {
-            Some(_) => Rgb::ONE - from.of(self.reflectance) - (1.0 - from.white) * multiple,
-            None => Rgb::ONE,
+            Some(_) => {
+                let mirrored = from.mirror.of(self.reflectance);
+                Rgb::ONE - mirrored - from.lost() * multiple - Rgb::splat(from.layers)
+            }
+            None => Rgb::splat(1.0 - from.layers),
         };
         let mut all = (FRAC_1_PI * wi.z) * (color * reaches * arrives);
+        if !self.stack.is_bare() {
+            all += self.stack.layers_eval(self.wo, wi);
+        } else if self.is_smooth() {
+            return all;
+        }
+        let lost = self.seen.lost() * from.lost();
+        let lost_in_all = (PI * self.mean.lost()).max(self.stack.least_lost());
+        all += (wi.z * lost / lost_in_all) * self.multiple;
         if self.is_smooth() {
             return all;
         }
-        let lost = (1.0 - self.seen.white) * (1.0 - from.white);
-        let lost_in_all = (PI * (1.0 - self.albedos.mean().white)).max(1e-6);
-        all += (wi.z * lost / lost_in_all) * self.multiple;
 
         let h = (self.wo + wi).normalize_or_zero();
         let facets = self.ggx.distribution(h) * self.ggx.masking_shadowing(self.wo, wi);
+        let facets = facets * self.stack.leaves(self.wo.z, wi.z);
         all + (facets / (4.0 * self.wo.z)) * self.fresnel(self.wo.dot(h))
     }
 
@@ -138,7 +175,12 @@ impl Opaque {
         if wi.z <= 0.0 {
             return 0.0;
         }
-        let scattered = (1.0 - self.mirror_share) * FRAC_1_PI * wi.z;
+        let [coat, sheen] = self.layer_shares;
+        let rest = (1.0 - self.mirror_share - coat - sheen).max(0.0);
+        let mut scattered = rest * FRAC_1_PI * wi.z;
+        if !self.stack.is_bare() {
+            scattered += self.stack.layers_density(self.layer_shares, self.wo, wi);
+        }
         if self.is_smooth() {
             return scattered;
         }
@@ -148,15 +190,30 @@ impl Opaque {
     }
 
     /// Chooses where light comes from: `choice` which part of the surface, `u` where from.
-    pub(crate) fn sample(&self, choice: f32, u: [f32; 2]) -> Option<Scattered> {
+    pub(crate) fn sample(&self, mut choice: f32, u: [f32; 2]) -> Option<Scattered> {
         if choice < self.mirror_share {
             let h = if self.is_smooth() { Vec3::Z } else { self.ggx.sample_visible(self.wo, u) };
             let wi = 2.0 * self.wo.dot(h) * h - self.wo;
             if self.is_smooth() {
-                let weight = (1.0 / self.mirror_share) * self.fresnel(self.wo.z);
+                let share = self.stack.leaves(self.wo.z, self.wo.z) / self.mirror_share;
+                let weight = share * self.fresnel(self.wo.z);
                 return Some(Scattered { wi, weight, density: Density::Mirror });
             }
             return (wi.z > 0.0).then(|| self.sampled(wi));
+        }
+        choice -= self.mirror_share;
+        for (layer, share) in self.stack.layers.iter().zip(self.layer_shares) {
+            let Some(layer) = layer else { continue };
+            if choice < share {
+                return match layer.sample(self.wo, u) {
+                    (wi, Some(mirrored)) => {
+                        let weight = (1.0 / share) * mirrored;
+                        Some(Scattered { wi, weight, density: Density::Mirror })
+                    }
+                    (wi, None) => (wi.z > 0.0).then(|| self.sampled(wi)),
+                };
+            }
+            choice -= share;
         }
         let wi = cosine_hemisphere(u);
         (wi.z > 0.0).then(|| self.sampled(wi))

@@ -2,6 +2,7 @@
 
 use raywood_scene::{MetallicRoughness, Rgb};
 
+use super::layer::{Coat, Sheen};
 use super::opaque::OpaqueSurface;
 use crate::surface_material::SurfaceMaterial;
 
@@ -34,10 +35,17 @@ impl Substance {
         diffuse: Rgb,
         made_of: Option<MetallicRoughness>,
     ) -> Self {
-        match made_of {
+        let mut substance = match made_of {
             Some(made_of) => Self::of_metallic_roughness(material, made_of),
             None => Self::of_shares(material, diffuse),
-        }
+        };
+        let (coat, sheen) = (material.coat, material.sheen);
+        let alpha = |roughness: f32| roughness * roughness;
+        substance.opaque.coat = (coat.strength > 0.0)
+            .then(|| Coat { share: coat.strength, alpha: alpha(coat.roughness) });
+        substance.opaque.sheen = (sheen.color != Rgb::ZERO)
+            .then(|| Sheen { color: sheen.color, alpha: alpha(sheen.roughness) });
+        substance
     }
 
     fn of_metallic_roughness(material: &SurfaceMaterial, made_of: MetallicRoughness) -> Self {
@@ -49,7 +57,14 @@ impl Substance {
         let bends = material.ior != 1.0;
         let alpha = roughness * roughness;
         Self {
-            opaque: OpaqueSurface { base, metallic, reflectance: Some(colour(reflectance)), alpha },
+            opaque: OpaqueSurface {
+                base,
+                metallic,
+                reflectance: Some(colour(reflectance)),
+                alpha,
+                coat: None,
+                sheen: None,
+            },
             glass_share: if bends { unit(transmission) * (1.0 - metallic) } else { 0.0 },
             tint: base,
             ior: material.ior,
@@ -89,7 +104,14 @@ impl Substance {
             (None, 0.0)
         };
         Self {
-            opaque: OpaqueSurface { base: base.min(Rgb::ONE), metallic: 0.0, reflectance, alpha },
+            opaque: OpaqueSurface {
+                base: base.min(Rgb::ONE),
+                metallic: 0.0,
+                reflectance,
+                alpha,
+                coat: None,
+                sheen: None,
+            },
             glass_share,
             tint,
             ior: material.ior,

@@ -3,6 +3,7 @@
 use raywood::Vec3;
 use raywood_scene::Rgb;
 
+use super::layer::{Coat, Sheen};
 use super::opaque::OpaqueSurface;
 use super::*;
 use crate::path_samples::PathSamples;
@@ -10,7 +11,14 @@ use crate::path_samples::PathSamples;
 /// An opaque surface that scatters and mirrors all, and glass that lets all through.
 fn white() -> Substance {
     Substance {
-        opaque: OpaqueSurface { base: Rgb::ONE, metallic: 0.0, reflectance: None, alpha: 0.0 },
+        opaque: OpaqueSurface {
+            base: Rgb::ONE,
+            metallic: 0.0,
+            reflectance: None,
+            alpha: 0.0,
+            coat: None,
+            sheen: None,
+        },
         glass_share: 0.0,
         tint: Rgb::ONE,
         ior: 1.5,
@@ -32,6 +40,19 @@ fn metal(roughness: f32) -> Substance {
 
 fn glass(ior: f32, roughness: f32) -> Substance {
     Substance { glass_share: 1.0, ior, glass_alpha: roughness * roughness, ..white() }
+}
+
+/// A clear coat over a share of something.
+fn under_coat(share: f32, roughness: f32, mut below: Substance) -> Substance {
+    below.opaque.coat = Some(Coat { share, alpha: roughness * roughness });
+    below
+}
+
+/// Fibres on something.
+fn under_sheen(strength: f32, roughness: f32, mut below: Substance) -> Substance {
+    let color = Rgb::splat(strength);
+    below.opaque.sheen = Some(Sheen { color, alpha: roughness * roughness });
+    below
 }
 
 /// From smooth to chalk.
@@ -56,6 +77,39 @@ fn white_surfaces() -> Vec<(String, Substance)> {
             (format!("glass of roughness {roughness}"), glass(1.5, roughness)),
             (format!("diamond of roughness {roughness}"), glass(2.4, roughness)),
             (format!("half glass of roughness {roughness}"), half_glass),
+            (
+                format!("coat on chalk of roughness {roughness}"),
+                under_coat(1.0, roughness, white()),
+            ),
+            (
+                format!("smooth coat on metal of roughness {roughness}"),
+                under_coat(1.0, 0.0, metal(roughness)),
+            ),
+            (
+                format!("coat on metal, both of roughness {roughness}"),
+                under_coat(1.0, roughness, metal(roughness)),
+            ),
+            (
+                format!("smooth coat on paint of roughness {roughness}"),
+                under_coat(1.0, 0.0, half_metal),
+            ),
+            (
+                format!("half a rough coat on metal of roughness {roughness}"),
+                under_coat(0.5, 0.4, metal(roughness)),
+            ),
+            (
+                format!("coat on smooth metal of roughness {roughness}"),
+                under_coat(1.0, roughness, metal(0.0)),
+            ),
+            (format!("velvet of roughness {roughness}"), under_sheen(1.0, roughness, white())),
+            (
+                format!("sheen on paint, both of roughness {roughness}"),
+                under_sheen(0.6, roughness, half_metal),
+            ),
+            (
+                format!("sheen beside a coat, both of roughness {roughness}"),
+                under_coat(0.4, roughness, under_sheen(1.0, roughness, coated(0.04, 0.3))),
+            ),
         ]);
     }
     all
@@ -87,26 +141,59 @@ fn furnace(bsdf: &Bsdf, samples: u32) -> f32 {
 #[test]
 fn white_furnace() {
     let tables = tables();
+    let mut seen = Vec::new();
     for (name, substance) in white_surfaces() {
         for cosine in COSINES {
             for outside in [true, false] {
                 let bsdf = Bsdf::new(&substance, from(cosine), outside, &tables);
                 let back = furnace(&bsdf, 1 << 14);
-                assert!((back - 1.0).abs() < 0.01, "{name} at {cosine}: {back} of 1");
+                if back.is_nan() || (back - 1.0).abs() >= 0.01 {
+                    seen.push(format!("{name} at {cosine}: {back} of 1"));
+                }
             }
         }
     }
+    assert!(seen.is_empty(), "{seen:#?}");
 }
 
-/// Coloured surfaces send back at most what they get.
+/// Layers of any roughness on metal of any other, where tables must know most: all of the light comes back.
+#[test]
+fn layers_on_mirrors_lose_nothing() {
+    const ROUGHNESSES: [f32; 8] = [0.0, 0.04, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0];
+    let mut seen = Vec::new();
+    for layer in ROUGHNESSES {
+        for below in ROUGHNESSES {
+            let coat = under_coat(1.0, layer, metal(below));
+            let sheen = under_sheen(1.0, layer, metal(below));
+            for (name, substance) in [("coat", coat), ("sheen", sheen)] {
+                for cosine in [0.04, 0.1, 0.18, 0.35, 0.65, 0.95] {
+                    let bsdf = Bsdf::new(&substance, from(cosine), true, &[]);
+                    // Fibres are chosen evenly, which takes many samples.
+                    let back = furnace(&bsdf, 1 << 16);
+                    if back.is_nan() || (back - 1.0).abs() >= 0.01 {
+                        seen.push(format!("{name} {layer} on {below} at {cosine}: {back}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen.is_empty(), "{seen:#?}");
+}
+
+/// Coloured surfaces send back at most what they get, below layers too.
 #[test]
 fn nothing_is_gained() {
     let color = Rgb::new(0.9, 0.5, 0.02);
-    for roughness in ROUGHNESSES {
+    let bare = |substance| substance;
+    let coat = |substance| under_coat(1.0, 0.2, substance);
+    let sheen = |substance| under_sheen(0.7, 0.5, substance);
+    let over: [&dyn Fn(Substance) -> Substance; 3] = [&bare, &coat, &sheen];
+    for (roughness, layered) in ROUGHNESSES.iter().flat_map(|r| over.iter().map(move |l| (*r, l))) {
         for metallic in [0.0, 0.5, 1.0] {
             let mut substance = coated(0.2, roughness);
             substance.opaque.base = color;
             substance.opaque.metallic = metallic;
+            let substance = layered(substance);
             for cosine in COSINES {
                 let bsdf = Bsdf::new(&substance, from(cosine), true, &[]);
                 let mut sum = Rgb::ZERO;

@@ -11,6 +11,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "albedo",
     help: "colours of surfaces without light and shadow",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: OfEach(albedo) }),
 };
 

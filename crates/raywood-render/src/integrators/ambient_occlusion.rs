@@ -19,6 +19,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "ao",
     help: "ambient occlusion: how open the surroundings are, up to a quarter of the way to the eye",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: Occlusion::of(frame) }),
 };
 

@@ -12,6 +12,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "depth",
     help: "how far away things are: the nearest white, the farthest black, by the reciprocal",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: OfEach(depth(ViewDepths::of(frame))) }),
 };
 

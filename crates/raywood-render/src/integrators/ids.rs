@@ -12,6 +12,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "ids",
     help: "a colour for each material, a shade of it for each triangle",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: OfEach(id) }),
 };
 

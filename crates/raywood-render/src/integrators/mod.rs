@@ -14,7 +14,7 @@ mod wireframe;
 
 use std::fmt;
 
-use raywood_scene::Camera;
+use raywood_scene::{Camera, Material, Scene};
 
 use crate::PreparedScene;
 use crate::camera_rays::{CameraError, CameraRays};
@@ -35,6 +35,8 @@ pub struct Integrator {
     pub help: &'static str,
     /// Whether pictures show light, of which there may be more than white. Else they show numbers from 0 to 1, which are written as they are.
     pub shows_light: bool,
+    /// Whether light is shown as all parts of materials scatter it, sheen and the colours of glass that parts them too.
+    pub shows_all_materials: bool,
     /// Begins a picture.
     start: Start,
 }
@@ -65,6 +67,21 @@ impl Integrator {
     /// The method of this name.
     pub fn by_name(name: &str) -> Option<&'static Self> {
         INTEGRATORS.iter().find(|integrator| integrator.name == name)
+    }
+
+    /// What of a scene its pictures of light leave out, in words.
+    pub fn left_out(&self, scene: &Scene) -> Vec<&'static str> {
+        let has = |of: fn(&Material) -> bool| scene.materials.iter().any(of);
+        let mut left_out = Vec::new();
+        if self.shows_light && !self.shows_all_materials {
+            if has(|material| material.sheen.is_some()) {
+                left_out.push("sheen");
+            }
+            if has(|material| material.dispersion > 0.0) {
+                left_out.push("dispersion");
+            }
+        }
+        left_out
     }
 
     /// Begins a picture.

@@ -12,6 +12,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "normals",
     help: "normals for shading, -1 to 1 in x, y, z as 0 to 1 in red, green, blue",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: OfEach(normal) }),
 };
 

@@ -16,6 +16,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "wireframe",
     help: "the edges of triangles, over surfaces lit from the eye",
     shows_light: false,
+    shows_all_materials: false,
     start: |frame| Box::new(FirstHits { frame, shown: Wireframe }),
 };
 

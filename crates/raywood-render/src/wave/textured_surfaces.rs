@@ -81,7 +81,7 @@ impl Vectorized for TextureSurfaces<'_> {
             let Some(material) = scene.textured_material(index) else { continue };
             let same = &same[..same_count];
             let shown = &mut shown[..same_count];
-            shown.fill([[1.0; 4]; _]);
+            material.clear(shown);
             reads.read(material, footprints, same, shown);
             if let Some(map) = material.normal() {
                 let footprints = &footprints[usize::from(map.0.set.min(1))];

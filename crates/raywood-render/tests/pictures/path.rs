@@ -2,7 +2,9 @@
 
 use raywood::Vec3;
 use raywood_render::{Integrator, RenderOptions};
-use raywood_scene::{Camera, LightKind, Material, MetallicRoughness, Pattern, Rgb, Scene};
+use raywood_scene::{
+    Camera, Clearcoat, LightKind, Material, MetallicRoughness, Pattern, Rgb, Scene, Sheen,
+};
 
 use crate::common::{
     assert_near, camera, clear, flat_background, image, level, light, look, matte, one_pixel, scene,
@@ -206,4 +208,68 @@ fn veils_let_light_straight_on() {
         assert!(all.x > 0.1, "{all:?}");
         assert_near(half, 0.5 * all, 0.02 * all.x);
     }
+}
+
+/// A smooth coat on what is black mirrors four hundredths of light straight on and all from its edge, with both methods.
+#[test]
+fn a_clear_coat_mirrors() {
+    let coat = Clearcoat { strength: 1.0, roughness: 0.0 };
+    let coated = Material { clearcoat: Some(coat), ..matte(0.0) };
+    let mut floor = scene(&[(level(0.0, 50.0, true), 0)], &[], vec![coated]);
+    floor.background = flat_background(Rgb::ONE);
+    let seen =
+        |eye: [f32; 3], options: &RenderOptions| look(&floor, &narrow(eye, [0.0; 3]), options).0;
+    for options in [one_pixel(), path(64)] {
+        assert_near(seen([0.0, 3.0, 1e-3], &options), Rgb::splat(0.04), 1e-3);
+        let at_sixty = 0.04 + 0.96 * 0.5f32.powi(5);
+        assert_near(seen([3.0f32.sqrt(), 1.0, 0.0], &options), Rgb::splat(at_sixty), 2e-3);
+        let half = Clearcoat { strength: 0.5, ..coat };
+        let mut floor = floor.clone();
+        floor.materials[0].clearcoat = Some(half);
+        let (half, _) = look(&floor, &narrow([0.0, 3.0, 1e-3], [0.0; 3]), &options);
+        assert_near(half, Rgb::splat(0.02), 1e-3);
+    }
+}
+
+/// Fibres are bright from the side, and what Whitted's method leaves out of them is told.
+#[test]
+fn sheen_is_bright_from_the_side() {
+    let sheen = Sheen { color: Rgb::new(1.0, 0.5, 0.0), roughness: 0.5 };
+    let velvet = Material { sheen: Some(sheen), ..matte(0.0) };
+    let mut floor = scene(&[(level(0.0, 50.0, true), 0)], &[], vec![velvet]);
+    floor.background = flat_background(Rgb::ONE);
+    let seen = |eye: [f32; 3]| look(&floor, &narrow(eye, [0.0; 3]), &path(1024)).0;
+    let (above, beside) = (seen([0.0, 3.0, 1e-3]), seen([3.0, 0.3, 0.0]));
+    assert!(beside.x > 5.0 * above.x && beside.x < 1.0, "{above:?} {beside:?}");
+    assert!((beside.y / beside.x - 0.5).abs() < 0.01 && beside.z == 0.0, "{beside:?}");
+    assert_eq!(one_pixel().integrator.left_out(&floor), ["sheen"]);
+    assert!(path(1).integrator.left_out(&floor).is_empty());
+}
+
+/// Glass that parts colours loses nothing of any: in light of one from everywhere it cannot be seen. A beam behind it comes out in colours.
+#[test]
+fn glass_parts_colours() {
+    let with = |dispersion: f32, roughness: f32| {
+        let glass = metallic_roughness(0.0, roughness, 1.0);
+        let glass = Material { dispersion, ..glass };
+        let mut ball = scene(&[], &[([0.0; 3], 1.0, 0)], vec![glass]);
+        ball.background = flat_background(Rgb::ONE);
+        ball
+    };
+    let off_centre = Camera { fov_y: 2.0, ..camera([0.5, 0.3, 4.0], [0.5, 0.3, 0.0]) };
+    for roughness in [0.0, 0.4] {
+        let options = RenderOptions { max_depth: 64, ..path(1 << 14) };
+        let (seen, _) = look(&with(2.0, roughness), &off_centre, &options);
+        assert_near(seen, Rgb::ONE, 0.02);
+    }
+
+    // Light from the upper half alone: seen along the border each colour shows another share of it.
+    let border = |dispersion: f32| {
+        let mut ball = with(dispersion, 0.0);
+        ball.background.nadir = Rgb::ZERO;
+        look(&ball, &off_centre, &path(1 << 14)).0
+    };
+    let (parted, whole) = (border(2.0), border(0.0));
+    assert!((whole.x - whole.z).abs() < 1e-4, "{whole:?}");
+    assert!((parted.x - parted.z).abs() > 5e-3, "{parted:?}");
 }

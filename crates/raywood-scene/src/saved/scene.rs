@@ -4,12 +4,12 @@ use raywood::Vec3;
 
 use super::stored::{Fault, Reader, Stored, stored_enum, stored_struct};
 use crate::{
-    Background, Camera, Light, LightKind, Magnification, Material, MetallicRoughness, Pattern,
-    SurfaceTextures, Texture, TextureTransform, Wrap,
+    Background, Camera, Clearcoat, Light, LightKind, Magnification, Material, MetallicRoughness,
+    Pattern, Sheen, SurfaceTextures, Texture, TextureTransform, Wrap,
 };
 
 /// The version of what stands in the section.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What the section holds.
 pub(super) struct Small {
@@ -61,8 +61,13 @@ stored_struct!(Material {
     absorption,
     emission,
     metallic_roughness,
+    clearcoat,
+    sheen,
+    dispersion,
     textures,
 });
+stored_struct!(Clearcoat { strength, roughness });
+stored_struct!(Sheen { color, roughness });
 stored_struct!(MetallicRoughness { base, metallic, roughness, reflectance, transmission });
 stored_struct!(SurfaceTextures {
     color,
@@ -75,6 +80,10 @@ stored_struct!(SurfaceTextures {
     specular,
     transmission,
     occlusion,
+    clearcoat,
+    clearcoat_roughness,
+    sheen_color,
+    sheen_roughness,
     emission,
 });
 stored_struct!(Texture { image, set, transform, wrap, magnification });

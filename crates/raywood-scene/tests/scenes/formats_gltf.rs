@@ -5,7 +5,7 @@ use crate::formats_support::{
     triangle_count, volume,
 };
 use raywood::Vec3;
-use raywood_scene::{LightKind, LoadOptions, Place, load_file};
+use raywood_scene::{Clearcoat, LightKind, LoadOptions, Place, Sheen, load_file};
 
 /// The cube with these members.
 fn cube(more: &str) -> Vec<u8> {
@@ -156,6 +156,10 @@ fn materials() {
         {"name":"veil","alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.25],"metallicFactor":0}},
         {"name":"hole","alphaMode":"MASK","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.25]}},
         {"name":"sign","extensions":{"KHR_materials_unlit":{}},"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},
+        {"name":"paint","extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":0.75,"clearcoatRoughnessFactor":0.25}}},
+        {"name":"velvet","extensions":{"KHR_materials_sheen":{"sheenColorFactor":[1,0.5,7],"sheenRoughnessFactor":0.5}}},
+        {"name":"diamond","pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_dispersion":{"dispersion":0.36}}},
+        {"name":"nothing","extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":"x"},"KHR_materials_sheen":{"sheenColorFactor":3},"KHR_materials_dispersion":7}},
         {"name":"picture","pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"normalTexture":{"index":1},"emissiveFactor":[1,1,1],"emissiveTexture":{"index":1}}],"#;
     let scene = load("m.glb", cube(more)).unwrap();
     check_scene(&scene);
@@ -178,6 +182,13 @@ fn materials() {
     assert_eq!((veil.ior, veil.transmission), (1.0, Vec3::splat(0.75)));
     assert_eq!(by_name("hole").transmission, Vec3::ONE);
     assert_eq!((by_name("sign").emission, by_name("sign").diffuse), (Vec3::X, Vec3::ZERO));
+    let coat = Clearcoat { strength: 0.75, roughness: 0.25 };
+    assert_eq!((by_name("paint").clearcoat, by_name("paint").sheen), (Some(coat), None));
+    let sheen = Sheen { color: Vec3::new(1.0, 0.5, 1.0), roughness: 0.5 };
+    assert_eq!((by_name("velvet").sheen, by_name("velvet").clearcoat), (Some(sheen), None));
+    assert_eq!((by_name("diamond").dispersion, glass.dispersion), (0.36, 0.0));
+    let nothing = by_name("nothing");
+    assert_eq!((nothing.clearcoat, nothing.sheen, nothing.dispersion), (None, None, 0.0));
     assert_eq!(by_name("picture").emission, Vec3::ZERO);
     assert_eq!(scene.warnings, ["3 textures have no image, left out"]);
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use raywood::{Bvh, Joined, Vec3};
 use raywood_scene::{
-    Camera, Encoding, Instances, Light, LightKind, LoadOptions, Magnification, Material,
-    MetallicRoughness, Pattern, SavedScene, Scene, SurfaceTextures, Texture, TextureImage,
+    Camera, Clearcoat, Encoding, Instances, Light, LightKind, LoadOptions, Magnification, Material,
+    MetallicRoughness, Pattern, SavedScene, Scene, Sheen, SurfaceTextures, Texture, TextureImage,
     TextureTransform, Wrap, builtin, builtins, load_bytes, load_file, save_scene,
 };
 use raywood_testkit::saved::{Forgery, correct_checksums};
@@ -71,6 +71,9 @@ fn everything_that_a_scene_can_have_comes_back() {
         absorption: color(),
         emission: color(),
         metallic_roughness: None,
+        clearcoat: None,
+        sheen: None,
+        dispersion: 0.0,
         textures: None,
     });
     let direction = color();
@@ -117,6 +120,10 @@ fn textures_come_back() {
         specular: Some(texture),
         transmission: Some(texture),
         occlusion: Some((texture, 0.25)),
+        clearcoat: Some(Texture::new(1)),
+        clearcoat_roughness: Some(texture),
+        sheen_color: Some(texture),
+        sheen_roughness: Some(Texture::new(0)),
         emission: Some(Texture::new(0)),
     };
     let made_of = MetallicRoughness {
@@ -129,6 +136,9 @@ fn textures_come_back() {
     let mut scene = builtin("terrain?n=8").expect("it is made");
     let vertices = scene.mesh.triangles.positions().len();
     scene.materials[0].metallic_roughness = Some(made_of);
+    scene.materials[0].clearcoat = Some(Clearcoat { strength: 0.75, roughness: 0.25 });
+    scene.materials[0].sheen = Some(Sheen { color: Vec3::Y, roughness: 0.375 });
+    scene.materials[0].dispersion = 0.5;
     scene.materials[0].textures = Some(Box::new(all));
     scene.mesh.texture_coordinates[1] = (0..vertices).map(|i| [i as f32, -0.5]).collect();
     scene.mesh.tangents = vec![[0.0, 1.0, 0.0, -1.0]; vertices];
@@ -178,8 +188,8 @@ fn what_is_wrong_with_a_scene_is_said() {
         open(forgery.file()).expect_err("it is refused")
     };
     assert_eq!(
-        error(&|forgery| forgery.set("scene", 0, 2)),
-        "some/x.rwood: section `scene`, byte 0 of it: a scene of version 2, expected version 1; save it again from its model"
+        error(&|forgery| forgery.set("scene", 0, 3)),
+        "some/x.rwood: section `scene`, byte 0 of it: a scene of version 3, expected version 2; save it again from its model"
     );
     assert!(
         error(&|forgery| forgery.set("scene", 4, 7)).contains("7 before this, expected 0 or 1")

@@ -2,7 +2,9 @@
 
 use base64::Engine;
 use raywood::Vec3;
-use raywood_scene::{Encoding, Magnification, Material, Scene, SurfaceTextures, Wrap, load_file};
+use raywood_scene::{
+    Encoding, Magnification, Material, Scene, SurfaceTextures, Texture, Wrap, load_file,
+};
 
 use crate::formats_support::{Folder, check_error, check_scene, jpeg, png, textured_square};
 
@@ -34,9 +36,8 @@ fn images_inside_beside_and_in_the_json() {
     let scene = load(&folder, "m.glb", textured_square(&more, &[&inside]));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let found = textures(&scene.materials[0]);
-    let image = |texture: Option<raywood_scene::Texture>| {
-        &scene.images[texture.expect("a texture").image as usize]
-    };
+    let image =
+        |texture: Option<Texture>| &scene.images[texture.expect("a texture").image as usize];
     let color = image(found.color);
     assert_eq!((color.texels(), color.encoding()), (&[RED, GREEN][..], Encoding::Srgb));
     let metal = image(found.metallic_roughness);
@@ -74,6 +75,24 @@ fn samplers_sets_transforms_and_shared_images() {
     assert_eq!(scene.images.len(), 3);
     assert_eq!(scene.mesh.texture_coordinates[1][2], [0.5, 0.0]);
     assert_eq!(scene.mesh.tangents[3], [1.0, 0.0, 0.0, -1.0]);
+}
+
+#[test]
+fn coats_and_sheen_have_textures() {
+    let folder = Folder::new();
+    let more = r#""images":[{"bufferView":5,"mimeType":"image/png"}],"textures":[{"source":0}],
+        "materials":[{"extensions":{
+        "KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatTexture":{"index":0,"texCoord":1},"clearcoatRoughnessTexture":{"index":0}},
+        "KHR_materials_sheen":{"sheenColorFactor":[1,1,1],"sheenColorTexture":{"index":0},"sheenRoughnessTexture":{"index":9}}}}],"#;
+    let scene = load(&folder, "m.glb", textured_square(more, &[&png(1, &[RED])]));
+    let found = textures(&scene.materials[0]);
+    let [coat, roughness, color] =
+        [&found.clearcoat, &found.clearcoat_roughness, &found.sheen_color]
+            .map(|texture| texture.expect("a texture"));
+    assert_eq!((coat.set, roughness.set, found.sheen_roughness), (1, 0, None));
+    let encoding = |texture: Texture| scene.images[texture.image as usize].encoding();
+    assert_eq!([coat, roughness].map(encoding), [Encoding::Linear; 2]);
+    assert_eq!(encoding(color), Encoding::Srgb);
 }
 
 #[test]

@@ -32,6 +32,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "path",
     help: "path tracing: soft light, from surfaces that shine, the surroundings and each other (Kajiya 1986)",
     shows_light: true,
+    shows_all_materials: true,
     start: |frame| Box::new(Picture::new(frame)),
 };
 

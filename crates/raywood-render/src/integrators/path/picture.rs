@@ -6,6 +6,7 @@ use super::heuristic::Strategy;
 use crate::bsdf::GlassTable;
 use crate::integrators::Frame;
 use crate::light_sampling::{AreaLights, EnvironmentLight};
+use crate::surface_material::SurfaceMaterial;
 
 /// A picture that is begun: its lights with extent, ready to be asked, and what there is to know of rough glass.
 pub(super) struct Picture<'a> {
@@ -24,11 +25,14 @@ impl<'a> Picture<'a> {
         for material in &scene.scene().materials {
             let is_glass = |made_of: MetallicRoughness| made_of.transmission > 0.0;
             let bends = material.ior.is_finite() && material.ior > 0.0 && material.ior != 1.0;
-            if material.metallic_roughness.is_some_and(is_glass)
-                && bends
-                && glass.iter().all(|table| table.ior != material.ior)
-            {
-                glass.push(GlassTable::new(material.ior));
+            if !(material.metallic_roughness.is_some_and(is_glass) && bends) {
+                continue;
+            }
+            // For each colour that it parts.
+            for ior in SurfaceMaterial::new(material).iors() {
+                if glass.iter().all(|table| table.ior != ior) {
+                    glass.push(GlassTable::new(ior));
+                }
             }
         }
         Self {

@@ -40,6 +40,8 @@ pub(super) enum Decision {
     Light,
     LightPoint,
     Surroundings,
+    /// Which colour is followed through glass that parts them.
+    Color,
 }
 
 /// The random numbers of a path where it meets a surface.
@@ -133,7 +135,11 @@ impl Scatterer<'_> {
         };
         let frame = ShadingFrame::around(normal);
         let made_of = surfaces.made_of(scene, number);
-        let substance = Substance::of(material, surface.diffuse, made_of);
+        let mut substance = Substance::of(material, surface.diffuse, made_of);
+        if material.dispersion > 0.0 && substance.glass_share > 0.0 {
+            let channel = here.only_color(dice.pair(Decision::Color)[0]);
+            substance.ior = material.iors()[usize::from(channel)];
+        }
         let wo = frame.to_local(back);
         let bsdf = Bsdf::new(&substance, wo, surface.outside, &self.picture.glass);
 

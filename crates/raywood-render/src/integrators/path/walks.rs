@@ -18,6 +18,8 @@ pub(super) struct Walk {
     /// How much it went straight through since then: how often, and how far it is by now.
     pub(super) holes: u16,
     pub(super) since: f32,
+    /// The only colour that its light has since glass parted it from the others: 0 for red, 1 for green, 2 for blue.
+    pub(super) channel: Option<u8>,
     /// How likely its direction was when it was scattered, by solid angle; infinite where there was no other.
     pub(super) density: f32,
     /// What light along the ray counts in the pixel.
@@ -26,6 +28,19 @@ pub(super) struct Walk {
     pub(super) absorption: Rgb,
     /// How long the way from the eye to where the ray starts was.
     pub(super) length: f32,
+}
+
+impl Walk {
+    /// The colour that is followed from where glass parts them: if it is not known yet, each as likely, and its light counts for all three.
+    #[inline]
+    pub(super) fn only_color(&mut self, choice: f32) -> u8 {
+        *self.channel.get_or_insert_with(|| {
+            let channel = ((3.0 * choice) as u8).min(2);
+            let axis = [Rgb::X, Rgb::Y, Rgb::Z][usize::from(channel)];
+            self.weight = 3.0 * (self.weight * axis);
+            channel
+        })
+    }
 }
 
 impl Travelled for Walk {
@@ -83,6 +98,7 @@ impl Walked for Primary<'_> {
             depth: 0,
             holes: 0,
             since: 0.0,
+            channel: None,
             // Nobody asks for light from the eye.
             density: f32::INFINITY,
             weight: Rgb::ONE,

@@ -25,6 +25,7 @@ pub(super) const INTEGRATOR: Integrator = Integrator {
     name: "whitted",
     help: "direct light with sharp shadows, mirror reflection and refraction (Whitted 1980)",
     shows_light: true,
+    shows_all_materials: false,
     start: |frame| Box::new(Whitted { frame }),
 };
 

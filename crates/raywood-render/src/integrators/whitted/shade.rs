@@ -100,6 +100,14 @@ impl Shader<'_> {
         } else {
             (Rgb::ZERO, None)
         };
+        let [coat, coat_edge] = material.coat_mirror;
+        let mirror = if coat_edge > 0.0 && interface.is_none() {
+            // Of what it lets through, what is below mirrors its share.
+            let coat = schlick_to(Rgb::splat(coat), coat_edge, cos_view);
+            coat + (Rgb::ONE - coat) * mirror
+        } else {
+            mirror
+        };
 
         self.lights(&surface, number, &here, Rgb::ONE - mirror);
         if mirror != Rgb::ZERO {

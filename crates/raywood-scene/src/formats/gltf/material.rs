@@ -6,6 +6,7 @@ use gltf_json::texture::Info;
 use gltf_json::validation::Checked;
 use raywood::Vec3;
 
+use super::layers;
 use super::texture::{Named, Textures};
 use crate::formats::images::Use;
 use crate::{LightShares, Material, MetallicRoughness, Rgb, SurfaceTextures, Texture};
@@ -28,11 +29,14 @@ pub(super) fn convert(source: &Source, textures: &mut Textures<'_>) -> Material 
         transmission,
         emission: emission(source, extensions),
         metallic_roughness: Some(surface),
+        clearcoat: layers::clearcoat(extensions),
+        sheen: layers::sheen(extensions),
         ..Material::default()
     };
     if surface.transmission > 0.0 && surface.metallic < 1.0 {
         material.ior = ior;
         material.absorption = absorption(extensions);
+        material.dispersion = layers::dispersion(extensions);
     }
     let found = surface_textures(source, extensions, alpha, textures);
     // A texture mostly says where a surface is dark; without it all of the surface would glow.
@@ -179,6 +183,7 @@ fn surface_textures(
         found.specular_color = texture(specular.specular_color_texture.as_ref(), Use::ColorFactors);
     }
 
+    layers::find_textures(extensions, textures, &mut found);
     if let Some(normal) = &source.normal_texture {
         let others = normal.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
         let named = Named::other(normal.index.value(), normal.tex_coord, others);
@@ -198,11 +203,11 @@ fn surface_textures(
 const TRANSFORM: &str = "KHR_texture_transform";
 
 /// A factor within 0 to 1.
-fn unit(factor: f32) -> f32 {
+pub(super) fn unit(factor: f32) -> f32 {
     if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
 }
 
 /// A finite factor of at least 0.
-fn positive(factor: f32) -> f32 {
+pub(super) fn positive(factor: f32) -> f32 {
     if factor.is_finite() { factor.max(0.0) } else { 0.0 }
 }

@@ -3,7 +3,7 @@
 //! The node tree is flattened: every mesh of the default scene is copied to world space, once for each node that shows it, or for each of its instances
 //! (`EXT_mesh_gpu_instancing`); large ones that are shown often become [objects](crate::Instances) instead (see `sharing.rs`). Read:
 //! triangles, strips and fans, indexed or not; `POSITION`, `NORMAL`, `TANGENT`, `TEXCOORD_0`, `TEXCOORD_1`, `COLOR_0`; sparse and normalised
-//! accessors; metallic and rough materials as far as Whitted's method can show them, with all their textures (PNG and JPEG); perspective
+//! accessors; metallic and rough materials with clear coats, sheen and dispersion, and all their textures (PNG and JPEG) but the normals of coats; perspective
 //! cameras; punctual lights. Left out with a warning: images in other formats, points and lines, skins (shown as stored), morph targets
 //! and animations.
 //!
@@ -26,6 +26,7 @@ mod camera;
 mod check;
 mod container;
 mod document;
+mod layers;
 mod light;
 mod material;
 mod node;
