@@ -15,6 +15,7 @@ mod query;
 mod report;
 mod scene_source;
 mod simd_args;
+mod surroundings;
 mod view_args;
 
 use std::process::ExitCode;

@@ -52,13 +52,18 @@ impl ViewArgs {
         scene.up = self.up.map(|point| point.0).or(scene.up);
     }
 
-    /// The camera and lights: those of the options, else the scene's, else chosen ones; lights for the camera that is used. `aspect` is the
+    /// The camera and lights: those of the options, else the scene's, else chosen ones; lights for the camera that is used. `others` take the place of the scene's. `aspect` is the
     /// picture's width over its height.
     ///
     /// # Errors
     ///
     /// The scene has no camera of that number or name.
-    pub(crate) fn view(&self, prepared: &PreparedScene<'_>, aspect: f32) -> Result<View, Failure> {
+    pub(crate) fn view(
+        &self,
+        prepared: &PreparedScene<'_>,
+        aspect: f32,
+        others: Option<Vec<Light>>,
+    ) -> Result<View, Failure> {
         let scene = prepared.scene();
         let mut camera = match (&self.camera, scene.cameras.first()) {
             (Some(wanted), _) => camera_called(wanted, scene)?,
@@ -76,6 +81,8 @@ impl ViewArgs {
         } else if !self.light.is_empty() {
             let given = self.light.iter().map(|light| point_light(light, &camera));
             given.chain([ambient(0.15)]).collect()
+        } else if let Some(others) = others {
+            others
         } else if !scene.lights.is_empty() {
             scene.lights.clone()
         } else {

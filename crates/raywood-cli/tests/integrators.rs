@@ -80,6 +80,22 @@ fn a_panorama_lights_the_scene_and_is_seen() {
     let (_, sky) = color("--environment sky.hdr");
     assert!(sky[1] > 180 && sky[0] < 20, "Whitted's method shows it too: {sky:?}");
 
+    // By formula: blue, and a sun that lights what it can see with either method.
+    for method in ["path", "whitted"] {
+        let options = format!("-i {method} --environment sky:elevation=60,azimuth=180");
+        let view = "--eye 0.3,0.3,2 --target 0.3,0.3,0";
+        let arguments = format!("render triangle.obj --size 16x16 -n 64 {view} {options}");
+        let output = run(&folder, &arguments);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        let picture = Picture::read(&folder.join("render.png")).expect("a PNG");
+        let pixel = |x: usize, y: usize| &picture.rgb[3 * (y * picture.width + x)..][..3];
+        let (lit, sky) = (pixel(8, 8), pixel(8, 0));
+        assert!(sky[2] > sky[0] + 20, "{method}: {sky:?}");
+        assert!(lit.iter().all(|&channel| channel > 60), "{method}: {lit:?}");
+    }
+    let said = stderr(&run(&folder, "render triangle.obj --environment sky:height=3"));
+    assert!(said.contains("a sky has no `height`"), "{said}");
+
     let said = stderr(&run(&folder, "render triangle.obj --environment triangle.obj"));
     assert!(said.contains("triangle.obj: is in no known format: expected a Radiance"), "{said}");
     let said = stderr(&run(&folder, "render triangle.obj --environment missing.hdr"));

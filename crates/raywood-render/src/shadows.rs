@@ -105,7 +105,7 @@ pub fn shadow_ray(light: &Light, point: &SurfacePoint) -> Option<Ray> {
             let share = cone_share(towards, direction, cos_inner, cos_outer);
             if share > 0.0 { towards } else { return None }
         }
-        LightKind::Directional { direction } => -direction,
+        LightKind::Directional { direction, .. } => -direction,
         LightKind::Ambient => return None,
     };
     Some(Aim::at(light).ray_from(point.origin_towards(towards)))
@@ -133,7 +133,7 @@ impl Aim {
             LightKind::Point { position } | LightKind::Spot { position, .. } => {
                 Self::Point(position)
             }
-            LightKind::Directional { direction } => Self::Direction(-direction),
+            LightKind::Directional { direction, .. } => Self::Direction(-direction),
             // It comes from all sides; nobody asks.
             LightKind::Ambient => Self::Direction(Vec3::ZERO),
         }

@@ -215,7 +215,7 @@ pub fn default_lights(camera: &Camera) -> Vec<Light> {
 
     let directional = |name: &str, towards: Vec3, strength: f32| Light {
         name: name.into(),
-        kind: LightKind::Directional { direction: -towards.normalize_or_zero() },
+        kind: LightKind::directional(-towards.normalize_or_zero()),
         intensity: Rgb::splat(strength),
     };
     vec![
@@ -343,7 +343,7 @@ mod tests {
     fn the_key_light_comes_from_above_and_from_the_viewers_side() {
         let camera = default_camera(&Aabb::new([-1.0; 3], [1.0; 3]), Vec3::Y, 1.6);
         let lights = default_lights(&camera);
-        let LightKind::Directional { direction } = lights[0].kind else {
+        let LightKind::Directional { direction, .. } = lights[0].kind else {
             panic!("not directional")
         };
         assert!(direction.y < -0.5);

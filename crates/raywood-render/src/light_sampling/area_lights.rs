@@ -1,13 +1,13 @@
 //! Surfaces that send out light: triangles and spheres, chosen by their power.
 //!
-//! Points of triangles are chosen evenly, of spheres those that are seen, by the cone around them (Shirley, Wang and Zimmerman, "Monte Carlo Techniques
-//! for Direct Lighting Calculations", 1996).
+//! Points of triangles are chosen evenly, of spheres those that are seen, by the [cone](Cone) around them.
 
 use std::f32::consts::PI;
 
 use raywood::{Hit, Vec3};
 use raywood_scene::luminance;
 
+use super::cone::Cone;
 use super::{AliasTable, LightSample};
 use crate::PreparedScene;
 use crate::prepared::{Element, Which};
@@ -91,13 +91,13 @@ impl AreaLights {
                 let radiance = scene.material_of(element).emission;
                 let way = center - point;
                 let distance = way.length();
-                let cone = Cone::around(distance, radius)?;
+                let cone = Cone::around_sphere(distance, radius)?;
                 let direction = cone.sample(way / distance, u);
                 // Where the cone's ray enters the sphere; at its rim it may just miss.
                 let along = direction.dot(way);
                 let inside = (radius * radius - (distance * distance - along * along)).max(0.0);
                 let target = point + (along - inside.sqrt()) * direction;
-                let density = per_area * 4.0 * PI * radius * radius / cone.solid_angle;
+                let density = per_area * 4.0 * PI * radius * radius / cone.solid_angle();
                 let is_sound = density > 0.0 && density.is_finite();
                 is_sound.then_some(LightSample {
                     direction,
@@ -121,38 +121,10 @@ impl AreaLights {
                 // The distance of the centre follows from that of a point and its angle.
                 let squared =
                     distance * distance + radius * radius + 2.0 * distance * radius * cosine;
-                Cone::around(squared.sqrt(), radius)
-                    .map_or(0.0, |cone| per_area * 4.0 * PI * radius * radius / cone.solid_angle)
+                Cone::around_sphere(squared.sqrt(), radius)
+                    .map_or(0.0, |cone| per_area * 4.0 * PI * radius * radius / cone.solid_angle())
             }
         }
-    }
-}
-
-/// The cone in which a sphere is seen from outside.
-struct Cone {
-    /// One less the cosine of its half angle.
-    height: f32,
-    solid_angle: f32,
-}
-
-impl Cone {
-    /// `None` from inside or from the surface.
-    fn around(distance: f32, radius: f32) -> Option<Self> {
-        let sin2 = (radius / distance) * (radius / distance);
-        (sin2 < 1.0).then(|| {
-            // Not `1 - cos`, of which nothing is left of what is far away.
-            let height = sin2 / (1.0 + (1.0 - sin2).sqrt());
-            Self { height, solid_angle: 2.0 * PI * height }
-        })
-    }
-
-    /// A direction within it, evenly distributed, around an axis.
-    fn sample(&self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
-        let below = u * self.height;
-        let radius = (below * (2.0 - below)).max(0.0).sqrt();
-        let (sin, cos) = (2.0 * PI * v).sin_cos();
-        let (s, t) = axis.orthonormal_basis();
-        (radius * cos) * s + (radius * sin) * t + (1.0 - below) * axis
     }
 }
 

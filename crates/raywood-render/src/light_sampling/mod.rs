@@ -3,6 +3,7 @@
 
 mod alias_table;
 mod area_lights;
+mod cone;
 mod environment;
 
 use raywood::Vec3;
@@ -10,6 +11,7 @@ use raywood_scene::Rgb;
 
 pub(crate) use alias_table::AliasTable;
 pub(crate) use area_lights::{AreaLights, Lit};
+pub(crate) use cone::Cone;
 pub(crate) use environment::{EnvironmentLight, to_angles};
 
 /// Where light comes from.

@@ -114,9 +114,7 @@ pub(super) fn lights(prepared: &PreparedScene<'_>, bounds: &Aabb, camera: &Camer
     if !prepared.tracer().occluded(&Ray::new(bounds.center(), up)) {
         lights.push(Light {
             name: "sun".into(),
-            kind: LightKind::Directional {
-                direction: -(0.25 * across + up + 0.35 * along).normalize_or_zero(),
-            },
+            kind: LightKind::directional(-(0.25 * across + up + 0.35 * along).normalize_or_zero()),
             intensity: Rgb::splat(0.9),
         });
     }

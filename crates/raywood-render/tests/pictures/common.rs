@@ -95,7 +95,7 @@ pub(crate) fn still_life() -> Scene {
     scene.background = Background::default();
     scene.lights = vec![
         light(LightKind::Point { position: Vec3::new(-3.0, 5.0, 4.0) }, 40.0),
-        light(LightKind::Directional { direction: Vec3::new(-0.6, -0.8, 0.0) }, 0.4),
+        light(LightKind::directional(Vec3::new(-0.6, -0.8, 0.0)), 0.4),
         light(
             LightKind::Spot {
                 position: Vec3::new(3.0, 4.0, 2.0),

@@ -76,7 +76,7 @@ fn checkered(lamps: usize) -> (Scene, Camera) {
 fn sunny() -> (Scene, Camera) {
     let (mut scene, view) = checkered(0);
     let direction = Vec3::new(-0.6, -0.8, 0.0);
-    scene.lights = vec![light(LightKind::Directional { direction }, 1.0)];
+    scene.lights = vec![light(LightKind::directional(direction), 1.0)];
     (scene, view)
 }
 

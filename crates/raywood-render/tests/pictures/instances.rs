@@ -79,9 +79,7 @@ fn scene() -> Scene {
             },
             Light {
                 name: String::new(),
-                kind: LightKind::Directional {
-                    direction: Vec3::new(-0.3, -0.9, -0.3).normalize_or_zero(),
-                },
+                kind: LightKind::directional(Vec3::new(-0.3, -0.9, -0.3).normalize_or_zero()),
                 intensity: Rgb::splat(0.6),
             },
         ],

@@ -114,7 +114,7 @@ fn whitted_and_path_agree_on_mirrors_and_glass() {
     let glass = Material { absorption: Vec3::new(0.5, 0.1, 0.4), ..clear(1.5) };
     let lights = [
         light(LightKind::Point { position: Vec3::new(-3.0, 5.0, 4.0) }, 30.0),
-        light(LightKind::Directional { direction: Vec3::new(-0.6, -0.8, 0.0) }, 0.4),
+        light(LightKind::directional(Vec3::new(-0.6, -0.8, 0.0)), 0.4),
         light(
             LightKind::Spot {
                 position: Vec3::new(3.0, 4.0, 2.0),
@@ -195,7 +195,7 @@ fn veils_let_light_straight_on() {
                 &[([0.0, 3.0, 0.0], 0.5, 2)],
                 vec![matte(0.5), veil, lamp(lamp_strength)],
             );
-            let sun = LightKind::Directional { direction: Vec3::new(0.0, -1.0, 0.0) };
+            let sun = LightKind::directional(Vec3::new(0.0, -1.0, 0.0));
             if lamp_strength == 0.0 {
                 scene.lights.push(light(sun, 1.0));
                 scene.spheres = raywood::Spheres::default();
@@ -272,4 +272,31 @@ fn glass_parts_colours() {
     let (parted, whole) = (border(2.0), border(0.0));
     assert!((whole.x - whole.z).abs() < 1e-4, "{whole:?}");
     assert!((parted.x - parted.z).abs() > 5e-3, "{parted:?}");
+}
+
+/// Below the edge of a roof half of a round sun is seen, and as far to either side as its angle reaches none or all of it: the shares that the chord leaves of a disc.
+#[test]
+fn round_lights_far_away_have_soft_shadows() {
+    const ANGLE: f32 = 0.1;
+    // Reaches up to x = 0, as seen from above.
+    let roof = [[-9.0, 1.0, 9.0], [0.0, 1.0, 9.0], [0.0, 1.0, -9.0], [-9.0, 1.0, -9.0]];
+    let mut scene = scene(&[(level(0.0, 9.0, true), 0), (roof, 0)], &[], vec![matte(0.5)]);
+    let direction = Vec3::new(0.0, -1.0, 0.0);
+    let sun = LightKind::Directional { direction, angular_radius: ANGLE };
+    scene.lights = vec![light(sun, 1.0)];
+    let floor = |x: f32, options: RenderOptions| {
+        let options = RenderOptions { max_depth: 0, ..options };
+        look(&scene, &narrow([x, 0.5, 0.0], [x, 0.0, 1e-3]), &options).0.x
+    };
+    let visible = |x: f32| {
+        let edge = (x / ANGLE.tan()).clamp(-1.0, 1.0);
+        0.5 + (edge.asin() + edge * (1.0 - edge * edge).sqrt()) / std::f32::consts::PI
+    };
+    for x in [-0.11, -0.05, 0.0, 0.03, 0.08, 0.11] {
+        let seen = floor(x, path(4096));
+        assert!((seen - 0.5 * visible(x)).abs() < 3e-3, "{x}: {seen} for {}", visible(x));
+    }
+    // Whitted's method has sharp ones.
+    let whitted = [-0.01, 0.01].map(|x| floor(x, one_pixel()));
+    assert!(whitted[0] == 0.0 && (whitted[1] - 0.5).abs() < 1e-5, "{whitted:?}");
 }

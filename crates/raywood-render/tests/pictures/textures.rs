@@ -55,7 +55,7 @@ fn half_hole(cutoff: Option<f32>) -> (Material, TextureImage) {
     (textured(matte(0.5), textures), image.expect("a sound image"))
 }
 
-const FRONT: LightKind = LightKind::Directional { direction: Vec3::new(0.0, 0.0, -1.0) };
+const FRONT: LightKind = LightKind::directional(Vec3::new(0.0, 0.0, -1.0));
 
 #[test]
 fn an_image_stands_upright_and_its_colours_become_linear_light_once() {
@@ -184,7 +184,7 @@ fn bumped(normal: [u8; 3], towards: Vec3, change: impl Fn(&mut Scene)) -> f32 {
     let textures = SurfaceTextures { normal: Some((Texture::new(0), 1.0)), ..Default::default() };
     let map = plain_image(1, &[[x, y, z, 255]], Encoding::Linear);
     let mut scene = pictures(&[(upright(0.0), 0)], vec![textured(matte(1.0), textures)], vec![map]);
-    scene.lights = vec![light(LightKind::Directional { direction: -towards }, 1.0)];
+    scene.lights = vec![light(LightKind::directional(-towards), 1.0)];
     change(&mut scene);
     look(&scene, &camera([0.0, 0.0, 5.0], [0.0; 3]), &one_pixel()).0.x
 }

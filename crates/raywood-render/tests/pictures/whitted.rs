@@ -7,11 +7,11 @@ use raywood::Vec3;
 use raywood_render::RenderOptions;
 use raywood_scene::{Background, LightKind, Material, Pattern, Rgb};
 
-const DOWN: LightKind = LightKind::Directional { direction: Vec3::new(0.0, -1.0, 0.0) };
+const DOWN: LightKind = LightKind::directional(Vec3::new(0.0, -1.0, 0.0));
 
 #[test]
 fn a_diffuse_surface_follows_lamberts_law() {
-    let slanted = LightKind::Directional { direction: Vec3::new(0.6, -0.8, 0.0) };
+    let slanted = LightKind::directional(Vec3::new(0.6, -0.8, 0.0));
     let mut scene = scene(&[(level(0.0, 5.0, true), 0)], &[], vec![matte(0.5)]);
     scene.lights = vec![light(slanted, 2.0), light(LightKind::Ambient, 0.1)];
     let eye = camera([0.0, 3.0, 1.0], [0.0, 0.0, 0.0]);

@@ -107,7 +107,7 @@ fn lights() -> Vec<Light> {
     let sun = Vec3::new(-0.58, -0.55, -0.62).normalize_or_zero();
     vec![
         light("ambient", LightKind::Ambient, Rgb::new(0.13, 0.15, 0.19)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.1, 1.8, 1.4)),
+        light("sun", LightKind::directional(sun), Rgb::new(2.1, 1.8, 1.4)),
         light(
             "fill",
             LightKind::Point { position: Vec3::new(-7.0, 4.0, 5.0) },

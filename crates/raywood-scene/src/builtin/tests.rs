@@ -40,7 +40,7 @@ fn scenes_are_complete_and_consistent() {
             assert!((normal.length() - 1.0).abs() < 1e-4, "{name}: {normal:?} at {corner}");
         }
         for light in &scene.lights {
-            if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } =
+            if let LightKind::Directional { direction, .. } | LightKind::Spot { direction, .. } =
                 light.kind
             {
                 assert!((direction.length() - 1.0).abs() < 1e-5, "{name}: {light:?}");

@@ -2,9 +2,12 @@
 
 mod open_exr;
 mod radiance;
+mod sky;
 
+use std::f32::consts::PI;
 use std::path::Path;
 
+pub use self::sky::Sky;
 use crate::Rgb;
 use crate::error::{LoadError, Place};
 use crate::load::read_file;
@@ -66,6 +69,19 @@ impl Environment {
         self.texels[row as usize * self.width as usize + column as usize]
     }
 
+    /// The mean of the light from all directions. O(texels).
+    pub fn mean_light(&self) -> Rgb {
+        let (mut sum, mut all) = (Rgb::ZERO, 0.0);
+        for (row, texels) in self.texels.chunks_exact(self.width as usize).enumerate() {
+            // Rows near the poles stand for little of the sphere.
+            let down = PI * (row as f32 + 0.5) / self.height as f32;
+            let weight = down.sin() / self.width as f32;
+            sum += texels.iter().fold(Rgb::ZERO, |sum, &texel| sum + weight * texel);
+            all += down.sin();
+        }
+        (1.0 / all) * sum
+    }
+
     /// The light from a direction, blended between texels: `turn` is the share of the way around, from 0 to 1, of the left edge to the right, `down` of the way
     /// from the zenith to the nadir.
     pub fn light(&self, turn: f32, down: f32) -> Rgb {
@@ -102,4 +118,21 @@ pub fn load_environment(path: &Path) -> Result<Environment, LoadError> {
     };
     let expected = "expected a Radiance or OpenEXR picture (.hdr, .exr) of the surroundings";
     Err(LoadError::new(path, Place::File, format!("{kind}: {expected}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A white cap around the zenith counts by its share of the sphere, not of the picture.
+    #[test]
+    fn means_are_those_of_the_sphere() {
+        for degrees in [0, 30, 90, 180] {
+            let texel = |number: usize| if number < 2 * degrees { Rgb::ONE } else { Rgb::ZERO };
+            let texels = (0..360).map(texel).collect();
+            let mean = Environment::new(2, 180, texels).expect("a panorama").mean_light();
+            let share = 0.5 * (1.0 - (degrees as f32).to_radians().cos());
+            assert!((mean - Rgb::splat(share)).abs().max_element() < 1e-4, "{degrees}: {mean:?}");
+        }
+    }
 }

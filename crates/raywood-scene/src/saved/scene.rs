@@ -101,7 +101,7 @@ stored_enum!(Pattern {
 stored_enum!(LightKind {
     0 => Point { position },
     1 => Spot { position, direction, cos_inner, cos_outer },
-    2 => Directional { direction },
+    2 => Directional { direction, angular_radius },
     3 => Ambient {},
 });
 

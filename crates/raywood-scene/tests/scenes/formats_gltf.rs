@@ -216,7 +216,9 @@ fn cameras_and_lights() {
     assert!((camera.fov_y - 0.5f32.to_degrees()).abs() < 1e-4);
 
     let [sun, lamp, spot] = &scene.lights[..] else { panic!("{:?}", scene.lights) };
-    let LightKind::Directional { direction } = sun.kind else { panic!("{sun:?}") };
+    let LightKind::Directional { direction, angular_radius: 0.0 } = sun.kind else {
+        panic!("{sun:?}")
+    };
     assert!((direction - Vec3::new(0.0, -1.0, 0.0)).length() < 1e-6, "{direction:?}");
     assert!((sun.intensity - Vec3::new(1.0, 0.5, 0.25)).length() < 1e-6);
     assert_eq!(lamp.kind, LightKind::Point { position: Vec3::new(0.0, 5.0, 0.0) });

@@ -80,7 +80,7 @@ fn everything_that_a_scene_can_have_comes_back() {
     let kinds = [
         LightKind::Point { position: color() },
         LightKind::Spot { position: color(), direction, cos_inner: 0.9, cos_outer: 0.5 },
-        LightKind::Directional { direction },
+        LightKind::Directional { direction, angular_radius: 0.25 },
         LightKind::Ambient,
     ];
     let lights = kinds.map(|kind| Light { name: format!("{kind:?}"), kind, intensity: color() });

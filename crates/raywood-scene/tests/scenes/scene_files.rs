@@ -285,7 +285,7 @@ fn lights_and_cameras_are_read_and_move_with_their_model() {
     // Those of the model are left out, its camera is the last.
     assert_eq!(shown.lights.len(), 4);
     assert_eq!(shown.lights[0].name, "sun");
-    assert_eq!(shown.lights[0].kind, LightKind::Directional { direction: -Vec3::Y });
+    assert_eq!(shown.lights[0].kind, LightKind::directional(-Vec3::Y));
     let LightKind::Spot { direction, cos_inner, cos_outer, .. } = shown.lights[1].kind else {
         panic!("no spot light")
     };

@@ -5,12 +5,10 @@ mod lens_args;
 mod report;
 mod sampling_args;
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use raywood::StructureKind;
 use raywood_render::{Ended, HeatQuantity, INTEGRATORS, Integrator, RenderOptions};
-use raywood_scene::{Environment, load_environment};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
@@ -21,6 +19,7 @@ use crate::print;
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
 use crate::simd_args::SimdArgs;
+use crate::surroundings::Surroundings;
 use crate::view_args::ViewArgs;
 use image_args::{ImageArgs, ImageFile, Made};
 use lens_args::LensArgs;
@@ -86,11 +85,17 @@ pub(crate) struct Args {
     #[command(flatten)]
     view: ViewArgs,
 
-    /// Panorama around the scene (.hdr, .exr), or none
+    /// Panorama around the scene (.hdr or .exr), a sky, or none
     ///
-    /// A Radiance or OpenEXR picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it.
-    #[arg(help_heading = "View and light", long, value_name = "FILE|none", hide_short_help = true)]
-    environment: Option<PathBuf>,
+    /// A Radiance or OpenEXR picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it. `sky` is a clear sky by formula, whose sun takes the place of
+    /// the scene's lights: `sky:elevation=35,azimuth=130,turbidity=2.2`, degrees above the horizon and clockwise from the default view's direction, and how hazy the air is, from 1 to 10.
+    #[arg(
+        help_heading = "View and light",
+        long,
+        value_name = "FILE|sky|none",
+        hide_short_help = true
+    )]
+    environment: Option<Surroundings>,
 
     #[command(flatten)]
     lens: LensArgs,
@@ -165,12 +170,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             )));
         }
     }
-    let environment = args.environment.as_deref().map(environment).transpose()?;
 
     let pool = thread_pool(args.threads.map(usize::from))?;
+    let surroundings = args.environment.as_ref();
+    let environment = pool.install(|| surroundings.map(Surroundings::panorama).transpose())?;
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
+    let left_out = options.integrator.left_out(&loaded.scene);
+    if !left_out.is_empty() {
+        let (name, left_out) = (options.integrator.name, left_out.join(" and "));
+        print::warning(format_args!(
+            "integrator `{name}` leaves out {left_out}, which `--integrator path` shows"
+        ));
+    }
     let other_structure = args.structure.is_some_and(|kind| kind != StructureKind::default());
     let loaded = match args {
         _ if other_structure => loaded.without_instances("another structure")?,
@@ -183,12 +196,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
     let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
+    let sky_lights = surroundings
+        .zip(environment.as_ref())
+        .and_then(|(all, panorama)| all.lights(panorama, prepared.axes()));
     prepared.set_environment(environment);
     let build = started.elapsed();
 
     let started = Instant::now();
     let aspect = args.size.width as f32 / args.size.height as f32;
-    let choose = || args.view.view(&prepared, aspect);
+    let choose = || args.view.view(&prepared, aspect, sky_lights);
     let view = &during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
     options.lens = args.lens.lens(&prepared, &view.camera, args.size)?;
@@ -253,12 +269,4 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     Ok(())
-}
-
-/// The panorama of a file, or a black one.
-fn environment(path: &Path) -> Result<Environment, Failure> {
-    match path.to_str() {
-        Some("none") => Ok(Environment::black()),
-        _ => load_environment(path).map_err(Failure::bad_input),
-    }
 }

@@ -11,7 +11,7 @@ use super::shadow_rays::{Extent, ShadowRays};
 use super::walks::Walk;
 use crate::bsdf::Bsdf;
 use crate::bsdf::frame::ShadingFrame;
-use crate::light_sampling::LightSample;
+use crate::light_sampling::{Cone, LightSample};
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::shading::{Surface, light_cosine};
 use crate::shadows::Aim;
@@ -32,7 +32,7 @@ impl Vertex<'_> {
     /// Asks one of the lights without extent, a shining surface and the surroundings, and sends shadow rays to what would bring light.
     pub(super) fn ask_lights(&self, picture: &Picture<'_>, dice: Dice, shadows: &mut ShadowRays) {
         let [_, choice] = dice.pair(Decision::Part);
-        self.ask_point(picture, choice, shadows);
+        self.ask_point(picture, choice, dice, shadows);
         let scene = picture.frame.scene;
         let [area_choice, part_choice] = dice.pair(Decision::Light);
         if let Some(area) = &picture.area {
@@ -48,7 +48,13 @@ impl Vertex<'_> {
     }
 
     /// Asks one of the lights without extent, chosen by what it brings if nothing is in the way: by a reservoir of one, so that one pass does (Chao 1982).
-    fn ask_point(&self, picture: &Picture<'_>, mut choice: f32, shadows: &mut ShadowRays) {
+    fn ask_point(
+        &self,
+        picture: &Picture<'_>,
+        mut choice: f32,
+        dice: Dice,
+        shadows: &mut ShadowRays,
+    ) {
         let position = self.surface.point.position;
         let mut total = 0.0;
         let mut chosen: Option<(&Light, Illumination, f32)> = None;
@@ -57,7 +63,9 @@ impl Vertex<'_> {
             if !illumination.shines {
                 continue;
             }
+            // What is round may still be half above a horizon below which its middle is.
             let facing = illumination.direction.dot(self.surface.geometric_normal);
+            let facing = facing + angular_radius(light);
             // Glass lets light from behind through.
             let facing = if self.bsdf.is_glass() { 1.0 } else { facing.max(0.0) };
             let weight = facing * luminance(illumination.intensity);
@@ -78,7 +86,14 @@ impl Vertex<'_> {
         };
         // A white diffuse surface, which scatters by 1 / pi, would send back the intensity.
         let light_there = (PI * total / weight) * intensity;
-        self.send(direction, light_there, Aim::at(light), Extent::None, shadows);
+        let angle = angular_radius(light);
+        let (direction, aim) = if angle > 0.0 {
+            let direction = Cone::of_half_angle(angle).sample(direction, dice.pair(Decision::Disc));
+            (direction, Aim::Direction(direction))
+        } else {
+            (direction, Aim::at(light))
+        };
+        self.send(direction, light_there, aim, Extent::None, shadows);
     }
 
     /// Asks a light with extent.
@@ -128,7 +143,17 @@ impl Vertex<'_> {
     }
 }
 
-/// A light without extent as it is seen from a point.
+/// Half the angle that a light takes up, which paths never meet by themselves: at most a quarter of a circle.
+fn angular_radius(light: &Light) -> f32 {
+    match light.kind {
+        LightKind::Directional { angular_radius, .. } if angular_radius > 0.0 => {
+            angular_radius.min(0.5 * PI)
+        }
+        _ => 0.0,
+    }
+}
+
+/// A light without extent as it is seen from a point; of one that is round and far away the middle.
 fn illumination(light: &Light, point: Vec3) -> Illumination {
     let intensity = light.intensity;
     match light.kind {
@@ -139,7 +164,7 @@ fn illumination(light: &Light, point: Vec3) -> Illumination {
             let shines = there.shines && share > 0.0;
             Illumination { intensity: share * there.intensity, shines, ..there }
         }
-        LightKind::Directional { direction } => {
+        LightKind::Directional { direction, .. } => {
             Illumination { direction: -direction, intensity, shines: true }
         }
         // The surroundings take its place.

@@ -42,6 +42,8 @@ pub(super) enum Decision {
     Surroundings,
     /// Which colour is followed through glass that parts them.
     Color,
+    /// Which part of a round light far away is asked.
+    Disc,
 }
 
 /// The random numbers of a path where it meets a surface.

@@ -1,7 +1,9 @@
 //! What must hold of every way of finding light: all find the same.
 
 use raywood::{Spheres, TriangleMesh, Vec3};
-use raywood_scene::{Background, Camera, Material, MetallicRoughness, Rgb, Scene};
+use raywood_scene::{
+    Background, Camera, Clearcoat, Material, MetallicRoughness, Rgb, Scene, Sheen, Sky,
+};
 
 use super::heuristic::Strategy;
 use super::picture::Picture;
@@ -47,7 +49,11 @@ fn stage(floor: Material, lamp_light: f32, ball_light: f32, background: Rgb) -> 
 
 /// The mean of the pixels of a picture of the floor, in light that was scattered once or twice.
 fn light_of_floor(scene: &Scene, strategy: Strategy, samples: u32) -> f64 {
-    let prepared = PreparedScene::new(scene).expect("a tree");
+    light_of_prepared(&PreparedScene::new(scene).expect("a tree"), strategy, samples)
+}
+
+/// The same with whatever panorama is around the scene.
+fn light_of_prepared(prepared: &PreparedScene<'_>, strategy: Strategy, samples: u32) -> f64 {
     // What is asked at the last surface, scattered rays meet a step later.
     let max_depth = if strategy == Strategy::Scattering { 2 } else { 1 };
     let options =
@@ -56,7 +62,7 @@ fn light_of_floor(scene: &Scene, strategy: Strategy, samples: u32) -> f64 {
     let camera = Camera { name: String::new(), eye, target, up: Vec3::Y, fov_y: 30.0 };
     let progress = Progress::new();
     let lights = Lights::default();
-    let frame = Frame::new(&prepared, &lights, &camera, &options, &progress).expect("a camera");
+    let frame = Frame::new(prepared, &lights, &camera, &options, &progress).expect("a camera");
     let picture = Picture { strategy, ..Picture::new(&frame) };
     let pass = TilePass::all(samples);
     let fill = |tile: &_, pixels: &mut _| picture.render_tile(tile, &pass, pixels);
@@ -68,12 +74,16 @@ fn light_of_floor(scene: &Scene, strategy: Strategy, samples: u32) -> f64 {
 /// Asking lights, waiting for scattered rays to meet them, and both together find the same light, on surfaces of every kind, from every kind of light.
 #[test]
 fn all_ways_of_finding_light_agree() {
+    let coat = Clearcoat { strength: 0.8, roughness: 0.3 };
+    let sheen = Sheen { color: Rgb::ONE, roughness: 0.4 };
     let floors = [
         made_of(0.0, 1.0),
         made_of(0.0, 0.3),
         made_of(1.0, 0.5),
         made_of(1.0, 0.25),
         Material::default(),
+        Material { clearcoat: Some(coat), ..made_of(0.5, 0.4) },
+        Material { sheen: Some(sheen), ..Material::default() },
     ];
     let lights = [(4.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 0.5), (3.0, 2.0, 0.25)];
     for floor in &floors {
@@ -89,5 +99,22 @@ fn all_ways_of_finding_light_agree() {
                 floor.metallic_roughness
             );
         }
+    }
+}
+
+/// The same of a sky by formula, which is much brighter around its sun.
+#[test]
+fn a_sky_is_found_in_all_ways() {
+    for (floor, elevation) in
+        [(made_of(0.0, 1.0), 25.0), (made_of(1.0, 0.5), 8.0), (made_of(1.0, 0.4), 60.0)]
+    {
+        let scene = stage(floor, 0.0, 0.0, Rgb::ZERO);
+        let mut prepared = PreparedScene::new(&scene).expect("a tree");
+        prepared.set_environment(Sky { elevation, azimuth: 20.0, turbidity: 3.0 }.panorama());
+        let both = light_of_prepared(&prepared, Strategy::Both, 256);
+        let asked = light_of_prepared(&prepared, Strategy::Lights, 1024);
+        let met = light_of_prepared(&prepared, Strategy::Scattering, 4096);
+        let near = |a: f64, b: f64| (a - b).abs() < 0.015 * b;
+        assert!(both > 0.0 && near(both, met) && near(asked, met), "{both} {asked} {met}");
     }
 }

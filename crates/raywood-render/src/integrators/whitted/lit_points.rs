@@ -106,7 +106,7 @@ impl Vectorized for SendShadowRays<'_> {
                     ..at_point
                 }
             }),
-            LightKind::Directional { direction } => {
+            LightKind::Directional { direction, .. } => {
                 self.send(|_| Illumination { direction: -direction, intensity, shines: true });
             }
             LightKind::Ambient => {}

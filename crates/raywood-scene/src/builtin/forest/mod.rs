@@ -164,7 +164,7 @@ fn lights() -> Vec<Light> {
     let sun = Vec3::new(0.66, -0.60, -0.46).normalize_or_zero();
     vec![
         light("sky", LightKind::Ambient, Rgb::new(0.29, 0.35, 0.45)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(3.6, 2.95, 1.95)),
+        light("sun", LightKind::directional(sun), Rgb::new(3.6, 2.95, 1.95)),
     ]
 }
 

@@ -99,13 +99,9 @@ fn lights() -> Vec<Light> {
     let window_light = Vec3::new(0.84, -0.46, -0.28).normalize_or_zero();
     vec![
         light("sky", LightKind::Ambient, Rgb::new(0.115, 0.125, 0.155)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.7, 2.0, 1.22)),
+        light("sun", LightKind::directional(sun), Rgb::new(2.7, 2.0, 1.22)),
         // The blue of the sky comes in through the windows on the side away from the sun.
-        light(
-            "windows",
-            LightKind::Directional { direction: window_light },
-            Rgb::new(0.26, 0.33, 0.46),
-        ),
+        light("windows", LightKind::directional(window_light), Rgb::new(0.26, 0.33, 0.46)),
         // The sun's patches on the floor send light up: lamps that shine only upwards stand in for them.
         light("bounce near", up(Vec3::new(0.9, 0.02, 4.2)), Rgb::new(20.0, 14.6, 9.2)),
         light("bounce far", up(Vec3::new(0.8, 0.02, -13.0)), Rgb::new(20.0, 14.6, 9.0)),

@@ -136,7 +136,7 @@ fn lights() -> Vec<Light> {
     let sun = Vec3::new(0.88, -0.36, -0.22).normalize_or_zero();
     vec![
         light("sky", LightKind::Ambient, Rgb::new(0.15, 0.20, 0.32)),
-        light("sun", LightKind::Directional { direction: sun }, Rgb::new(2.5, 1.85, 1.20)),
+        light("sun", LightKind::directional(sun), Rgb::new(2.5, 1.85, 1.20)),
     ]
 }
 

@@ -38,7 +38,7 @@ pub(super) fn lights(
         let color = Rgb::from(source.color.map(|c| if c.is_finite() { c.max(0.0) } else { 1.0 }));
         let strength = if source.intensity.is_finite() { source.intensity.max(0.0) } else { 0.0 };
         let kind = match (source.type_, &source.spot) {
-            (Checked::Valid(Type::Directional), _) => LightKind::Directional { direction },
+            (Checked::Valid(Type::Directional), _) => LightKind::directional(direction),
             (Checked::Valid(Type::Spot), Some(spot)) => {
                 let outer = spot.outer_cone_angle.clamp(0.001, 0.5 * PI);
                 let inner = spot.inner_cone_angle.clamp(0.0, outer * 0.999);

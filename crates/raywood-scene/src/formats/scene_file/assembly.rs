@@ -308,7 +308,7 @@ fn moved(light: &Light, to_world: &Transform) -> Light {
             *position = to_world.point(*position);
             direction_there(direction);
         }
-        LightKind::Directional { direction } => direction_there(direction),
+        LightKind::Directional { direction, .. } => direction_there(direction),
         LightKind::Ambient => {}
     }
     if matches!(light.kind, LightKind::Point { .. } | LightKind::Spot { .. }) {

@@ -62,9 +62,7 @@ pub(super) fn light(value: Value<'_>) -> Result<Light, LoadError> {
                 cos_outer: outer.to_radians().cos(),
             }
         }
-        "directional" => {
-            LightKind::Directional { direction: fields.require("direction")?.direction()? }
-        }
+        "directional" => LightKind::directional(fields.require("direction")?.direction()?),
         _ => LightKind::Ambient,
     };
     let name = fields.read("name", Value::text)?.unwrap_or_default().to_owned();
