@@ -4,7 +4,8 @@ use std::path::Path;
 
 use raywood::Vec3;
 use raywood_scene::{
-    Background, LightKind, LoadOptions, Pattern, Rgb, Scene, builtin, load_file, save_scene,
+    Background, Clearcoat, LightKind, LoadOptions, Material, Pattern, Rgb, Scene, Sheen, builtin,
+    load_file, save_scene,
 };
 
 use crate::formats_support::{Folder, check_scene, load, png, triangle_count};
@@ -35,7 +36,8 @@ fn the_examples_of_the_documentation_load() {
 #[test]
 fn the_documentation_names_every_key() {
     let page = include_str!("../../../../docs/scene-file.md");
-    for text in ["zz = 1", "material.a.zz = 1", "[[model]]\nzz = 1", "[[camera]]\nzz = 1"] {
+    let tables = ["", "[material.a]\n", "[[model]]\n", "[[light]]\n", "[[camera]]\n"];
+    for text in tables.map(|table| format!("{table}zz = 1")) {
         let error = load("keys.toml", text).unwrap_err().to_string();
         let keys = error.split("(there are: ").nth(1).unwrap().trim_end_matches(')');
         for key in keys.split(", ").map(|key| key.trim_matches('`')) {
@@ -217,6 +219,60 @@ fn materials_are_as_they_are_described() {
     assert_eq!(named("veil").ior, 1.0);
 }
 
+/// The scene again, from a file in which it is saved.
+fn saved(scene: &Scene) -> Scene {
+    let tree = raywood::Bvh::build(scene.mesh.triangles.clone()).unwrap();
+    let mut bytes = Vec::new();
+    save_scene(scene, &tree, &mut bytes).unwrap();
+    load("saved.rwood", bytes).unwrap()
+}
+
+#[test]
+fn coats_sheen_and_dispersion_lie_over_materials_and_are_saved() {
+    let shown = with_triangle(
+        "[material.car]\ncolor = [0.5, 0, 0]\nclearcoat = 0.75\nclearcoat_roughness = 0.25\n\
+         [material.velvet]\nsheen = [0.5, 0.25, 1]\nsheen_roughness = 0.125\n\
+         [material.gem]\ntransmission = 1\nior = 2.4\ndispersion = 0.36\n\
+         [material.glossy]\npattern = { kind = \"marble\", color = 0.5, size = 1 }\nclearcoat = 1\nsheen = 1\n\
+         [material.bare]\nclearcoat = 0\nsheen = 0\nclearcoat_roughness = 1\nsheen_roughness = 1\n\
+         [[model]]\nfile = \"t.obj\"\n",
+    );
+    let named = |name: &str| shown.materials.iter().find(|m| m.name == name).unwrap();
+    let coat = |strength, roughness| Some(Clearcoat { strength, roughness });
+    let sheen = |color, roughness| Some(Sheen { color, roughness });
+    let layers = |name| (named(name).clearcoat, named(name).sheen, named(name).dispersion);
+    assert_eq!(layers("car"), (coat(0.75, 0.25), None, 0.0));
+    assert_eq!(layers("velvet"), (None, sheen(Rgb::new(0.5, 0.25, 1.0), 0.125), 0.0));
+    assert_eq!(layers("gem"), (None, None, 0.36));
+    // They go with both kinds of material; a coat is smooth and sheen that of velvet where nothing is said.
+    assert!(matches!(named("glossy").pattern, Pattern::Marble { .. }));
+    assert_eq!(layers("glossy"), (coat(1.0, 0.0), sheen(Rgb::ONE, 0.5), 0.0));
+    assert_eq!(layers("bare"), (None, None, 0.0));
+    assert_eq!(saved(&shown).materials, shown.materials);
+}
+
+#[test]
+fn overrides_change_layers_and_take_them_away() {
+    let folder = Folder::new();
+    let car = "[[model]]\nfile = \"builtin:whitted\"\n[model.override.floor]\nclearcoat = 0.5\nsheen = 0.25\n";
+    folder.write("car.toml", car);
+    let floor = |changes: &str| -> Material {
+        let text = format!("[[model]]\nfile = \"car.toml\"\n[model.override.floor]\n{changes}");
+        let path = folder.write("outer.toml", text);
+        let shown = load_file(&path, &LoadOptions::default()).unwrap();
+        shown.materials.into_iter().find(|material| material.name == "floor").unwrap()
+    };
+    let same = floor("");
+    assert_eq!(same.clearcoat, Some(Clearcoat { strength: 0.5, roughness: 0.0 }));
+    assert_eq!(same.sheen, Some(Sheen { color: Rgb::splat(0.25), roughness: 0.5 }));
+    let rough = floor("clearcoat_roughness = 0.75\nsheen_roughness = 0.125");
+    assert_eq!(rough.clearcoat, Some(Clearcoat { strength: 0.5, roughness: 0.75 }));
+    assert_eq!(rough.sheen, Some(Sheen { color: Rgb::splat(0.25), roughness: 0.125 }));
+    let bare = floor("clearcoat = 0\nsheen = 0");
+    let original = builtin("whitted").unwrap().materials.swap_remove(0);
+    assert_eq!(bare, original);
+}
+
 #[test]
 fn overrides_change_what_they_name_and_nothing_else() {
     let shown = scene(
@@ -308,6 +364,26 @@ fn lights_and_cameras_are_read_and_move_with_their_model() {
 }
 
 #[test]
+fn suns_take_up_an_angle_wherever_they_are_shown() {
+    let sun = "[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nintensity = 1\nangular_radius = 30\n";
+    let shown = with_triangle(&format!("{sun}[[model]]\nfile = \"t.obj\"\n"));
+    let angular_radius = 30f32.to_radians();
+    let expected = LightKind::Directional { direction: -Vec3::Y, angular_radius };
+    assert_eq!(shown.lights[0].kind, expected);
+    assert_eq!(saved(&shown).lights, shown.lights);
+
+    let folder = Folder::new();
+    folder.write("sun.toml", sun);
+    let text = "[[model]]\nfile = \"sun.toml\"\nrotate = [90, 0, 0]\nscale = 2";
+    let outer = load_file(&folder.write("outer.toml", text), &LoadOptions::default()).unwrap();
+    let LightKind::Directional { direction, angular_radius: turned } = outer.lights[0].kind else {
+        panic!("no directional light")
+    };
+    assert!(near(direction, -Vec3::Z), "{direction:?}");
+    assert_eq!((turned, outer.lights[0].intensity), (angular_radius, Rgb::ONE));
+}
+
+#[test]
 fn panoramas_surround_scenes_and_are_saved_with_them() {
     let folder = Folder::new();
     let mut hdr = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".to_vec();
@@ -322,10 +398,5 @@ fn panoramas_surround_scenes_and_are_saved_with_them() {
     assert_eq!((panorama.width(), panorama.height()), (2, 1));
     assert_eq!(load("background = 1\n[[model]]\nfile = \"inner.toml\"").environment, None);
 
-    let tree = raywood::Bvh::build(outer.mesh.triangles.clone()).unwrap();
-    let mut bytes = Vec::new();
-    save_scene(&outer, &tree, &mut bytes).unwrap();
-    let saved = folder.write("saved.rwood", bytes);
-    let saved = load_file(&saved, &LoadOptions::default()).unwrap();
-    assert_eq!(saved.environment, outer.environment);
+    assert_eq!(saved(&outer).environment, outer.environment);
 }

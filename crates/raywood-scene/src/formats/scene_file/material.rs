@@ -4,7 +4,7 @@ use raywood::Vec3;
 
 use super::syntax::{Fields, Value};
 use crate::error::LoadError;
-use crate::{LightShares, Material, MetallicRoughness, Pattern, Rgb};
+use crate::{Clearcoat, LightShares, Material, MetallicRoughness, Pattern, Rgb, Sheen};
 
 /// The keys of a material.
 const KEYS: &[&str] = &[
@@ -20,6 +20,11 @@ const KEYS: &[&str] = &[
     "ior",
     "absorption",
     "emission",
+    "clearcoat",
+    "clearcoat_roughness",
+    "sheen",
+    "sheen_roughness",
+    "dispersion",
     "textures",
 ];
 
@@ -28,6 +33,9 @@ const METALLIC_ROUGHNESS: [&str; 3] = ["metallic", "roughness", "reflectance"];
 
 /// Those of what shares out light in Whitted's terms.
 const SHARES: [&str; 4] = ["mirror", "specular", "shininess", "pattern"];
+
+/// How rough sheen is where no table says it: about as that of velvet.
+const SHEEN_ROUGHNESS: f32 = 0.5;
 
 /// What a table says of a material. What it does not say stays as it is.
 #[derive(Clone, Debug, Default)]
@@ -44,6 +52,11 @@ pub(super) struct MaterialChange {
     ior: Option<f32>,
     absorption: Option<Vec3>,
     emission: Option<Rgb>,
+    clearcoat: Option<f32>,
+    clearcoat_roughness: Option<f32>,
+    sheen: Option<Rgb>,
+    sheen_roughness: Option<f32>,
+    dispersion: Option<f32>,
     textures: Option<bool>,
 }
 
@@ -88,6 +101,11 @@ impl MaterialChange {
             ior: fields.read("ior", |value| value.number_in(1.0..=10.0))?,
             absorption: fields.read("absorption", light)?,
             emission: fields.read("emission", light)?,
+            clearcoat: fields.read("clearcoat", unit)?,
+            clearcoat_roughness: fields.read("clearcoat_roughness", unit)?,
+            sheen: fields.read("sheen", share)?,
+            sheen_roughness: fields.read("sheen_roughness", unit)?,
+            dispersion: fields.read("dispersion", |value| value.number_in(0.0..=f32::MAX))?,
             textures: fields.read("textures", textures)?,
         })
     }
@@ -131,6 +149,8 @@ impl MaterialChange {
         material.ior = self.ior.unwrap_or(material.ior);
         material.absorption = self.absorption.unwrap_or(material.absorption);
         material.emission = self.emission.unwrap_or(material.emission);
+        material.dispersion = self.dispersion.unwrap_or(material.dispersion);
+        self.apply_layers(material);
 
         let before = material.metallic_roughness;
         let made_of = match self.terms() {
@@ -148,6 +168,20 @@ impl MaterialChange {
             Some(made_of) => set_shares(material, &made_of),
             None => self.apply_shares(material),
         }
+    }
+
+    /// What lies over the material. A layer of which nothing is to be seen is none.
+    fn apply_layers(&self, material: &mut Material) {
+        let coat = material.clearcoat.unwrap_or_default();
+        let strength = self.clearcoat.unwrap_or(coat.strength);
+        let roughness = self.clearcoat_roughness.unwrap_or(coat.roughness);
+        material.clearcoat = (strength > 0.0).then_some(Clearcoat { strength, roughness });
+
+        let none = Sheen { color: Rgb::ZERO, roughness: SHEEN_ROUGHNESS };
+        let sheen = material.sheen.unwrap_or(none);
+        let color = self.sheen.unwrap_or(sheen.color);
+        let roughness = self.sheen_roughness.unwrap_or(sheen.roughness);
+        material.sheen = (color != Rgb::ZERO).then_some(Sheen { color, roughness });
     }
 
     fn apply_shares(&self, material: &mut Material) {

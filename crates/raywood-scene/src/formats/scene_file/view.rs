@@ -9,7 +9,8 @@ use crate::{Background, Camera, Light, LightKind};
 
 /// A table of a light.
 pub(super) fn light(value: Value<'_>) -> Result<Light, LoadError> {
-    const ALL: &[&str] = &[
+    const POINT: &[&str] = &["name", "kind", "intensity", "position"];
+    const SPOT: &[&str] = &[
         "name",
         "kind",
         "intensity",
@@ -19,13 +20,17 @@ pub(super) fn light(value: Value<'_>) -> Result<Light, LoadError> {
         "inner_angle",
         "outer_angle",
     ];
+    const DIRECTIONAL: &[&str] = &["name", "kind", "intensity", "direction", "angular_radius"];
+    const AMBIENT: &[&str] = &["name", "kind", "intensity"];
+
     let kinds = ["point", "spot", "directional", "ambient"];
-    let kind = value.fields("[[light]]", ALL)?.require("kind")?.word(&kinds)?;
-    let (what, keys): (_, &[&str]) = match kind {
-        "point" => ("a point light", &["name", "kind", "intensity", "position"]),
-        "spot" => ("a spot light", ALL),
-        "directional" => ("a directional light", &["name", "kind", "intensity", "direction"]),
-        _ => ("ambient light", &["name", "kind", "intensity"]),
+    let all = [SPOT, &["angular_radius"]].concat();
+    let kind = value.fields("[[light]]", &all)?.require("kind")?.word(&kinds)?;
+    let (what, keys) = match kind {
+        "point" => ("a point light", POINT),
+        "spot" => ("a spot light", SPOT),
+        "directional" => ("a directional light", DIRECTIONAL),
+        _ => ("ambient light", AMBIENT),
     };
     let fields = value.fields(what, keys)?;
     let position = || fields.require("position")?.vector();
@@ -62,7 +67,13 @@ pub(super) fn light(value: Value<'_>) -> Result<Light, LoadError> {
                 cos_outer: outer.to_radians().cos(),
             }
         }
-        "directional" => LightKind::directional(fields.require("direction")?.direction()?),
+        "directional" => {
+            let angle = fields.read("angular_radius", |value| value.number_in(0.0..=90.0))?;
+            LightKind::Directional {
+                direction: fields.require("direction")?.direction()?,
+                angular_radius: angle.unwrap_or(0.0).to_radians(),
+            }
+        }
         _ => LightKind::Ambient,
     };
     let name = fields.read("name", Value::text)?.unwrap_or_default().to_owned();
