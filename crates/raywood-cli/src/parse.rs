@@ -80,7 +80,7 @@ pub(crate) fn whole_number(text: &str, least: u32, most: u32) -> Result<u32, Str
 }
 
 /// What was found by a name, or else which names there are, and which was probably meant.
-pub(crate) fn named<T>(
+fn named<T>(
     text: &str,
     found: Option<T>,
     names: impl IntoIterator<Item = &'static str>,

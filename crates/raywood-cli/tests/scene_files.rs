@@ -56,6 +56,26 @@ fn every_command_takes_scene_files() {
     assert!(side == picture("a.scene.toml", "2"));
 }
 
+/// A sky in a scene file is that of the command line, with both methods and when it is saved.
+#[test]
+fn skies_are_the_same_in_scene_files_and_on_the_command_line() {
+    let folder = folder("skies-of-scene-files");
+    support::write_triangle(&folder);
+    let text = "environment = \"sky:elevation=20\"\n[[model]]\nfile = \"triangle.obj\"\n";
+    fs::write(folder.join("a.toml"), text).expect("a file");
+    json(&run(&folder, "build a.toml -o a.rwood --json"));
+    for method in ["whitted", "path --samples 4"] {
+        let [named, shown, saved] =
+            ["triangle.obj --environment sky:elevation=20", "a.toml", "a.rwood"].map(|scene| {
+                let options = format!("-i {method} -o out.png --size 64x40 --json");
+                json(&run(&folder, &format!("render {scene} {options}")));
+                fs::read(folder.join("out.png")).expect("a picture")
+            });
+        assert!(named == shown, "{method}");
+        assert!(shown == saved, "{method}");
+    }
+}
+
 #[test]
 fn wrong_scene_files_end_with_one_line_and_code_2() {
     let folder = folder("wrong-scene-files");

@@ -7,7 +7,7 @@ mod sky;
 use std::f32::consts::PI;
 use std::path::Path;
 
-pub use self::sky::Sky;
+pub use self::sky::{Sky, SkyError};
 use crate::Rgb;
 use crate::error::{LoadError, Place};
 use crate::load::read_file;

@@ -17,6 +17,17 @@ const BAD: &[(&str, &str, &[&str])] = &[
     ("background = \"#12345\u{e9}\"", "1:14", &["#rrggbb"]),
     ("background = { zenith = 1, horizon = 1 }", "1:14", &["needs the key `nadir`"]),
     ("environment = \"no.hdr\"", "1:15", &["no such file: `no.hdr`"]),
+    ("environment = 1", "1:15", &["a text in quotes"]),
+    (
+        "environment = \"sky:elevaton=20\"",
+        "1:15",
+        &["a sky has no `elevaton`: did you mean elevation?"],
+    ),
+    (
+        "environment = \"sky:turbidity=11\"",
+        "1:15",
+        &["`11` is no turbidity of a sky: expected a number from 1 to 10"],
+    ),
     ("sphere = 3", "1:10", &["headed [[sphere]]"]),
     ("[sphere]\nradius = 1", "1:", &["headed [[sphere]]"]),
     ("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1", "1:1", &["[[sphere]] needs the key `material`"]),

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use raywood::Vec3;
 use raywood_scene::{
-    Background, Clearcoat, LightKind, LoadOptions, Material, Pattern, Rgb, Scene, Sheen, builtin,
-    load_file, save_scene,
+    Axes, Background, Clearcoat, LightKind, LoadOptions, Material, Pattern, Rgb, Scene, Sheen, Sky,
+    builtin, load_file, save_scene,
 };
 
 use crate::formats_support::{Folder, check_scene, load, png, triangle_count};
@@ -399,4 +399,36 @@ fn panoramas_surround_scenes_and_are_saved_with_them() {
     assert_eq!(load("background = 1\n[[model]]\nfile = \"inner.toml\"").environment, None);
 
     assert_eq!(saved(&outer).environment, outer.environment);
+}
+
+#[test]
+fn skies_surround_scenes_and_light_them() {
+    let sky = Sky { elevation: 20.0, azimuth: 60.0, ..Sky::default() };
+    let panorama = sky.panorama().unwrap();
+    let text = "up = [0, 0, 1]\nenvironment = \"sky:elevation=20,azimuth=60\"\n\
+                [[model]]\nfile = \"builtin:whitted\"\n";
+    let shown = scene(text);
+    // The sun stands where it does in the panorama, and the model's own lights are left out.
+    assert!(shown.environment.as_ref() == Some(&panorama));
+    assert_eq!(shown.lights, sky.lights(&panorama, &Axes::new(Vec3::Z)));
+    let again = saved(&shown);
+    assert!(again.environment == shown.environment);
+    assert_eq!(again.lights, shown.lights);
+
+    // They join what lights the file has, and those of models where these are asked for.
+    let lamp = "[[light]]\nkind = \"point\"\nposition = [1, 2, 3]\nintensity = 5\n";
+    let names = |text: &str| -> Vec<String> {
+        scene(text).lights.into_iter().map(|light| light.name).collect()
+    };
+    assert_eq!(names(&format!("{text}{lamp}")), ["", "sun", "sky"]);
+    let own = builtin("whitted").unwrap().lights.len();
+    assert_eq!(names(&format!("{text}lights = true\n")).len(), own + 2);
+
+    // A scene file that another shows brings its sky and its sun.
+    let folder = Folder::new();
+    folder.write("inner.toml", text);
+    let outer = folder.write("outer.toml", "[[model]]\nfile = \"inner.toml\"");
+    let outer = load_file(&outer, &LoadOptions::default()).unwrap();
+    assert!(outer.environment.as_ref() == Some(&panorama));
+    assert_eq!(outer.lights, shown.lights);
 }

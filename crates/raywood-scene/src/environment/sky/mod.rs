@@ -2,6 +2,7 @@
 //! Scattering", 1993), and before that any number of times (Hillaire, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", 2020).
 
 mod atmosphere;
+mod name;
 
 use std::f32::consts::{PI, TAU};
 use std::ops::RangeInclusive;
@@ -12,6 +13,7 @@ use raywood::Vec3;
 use self::atmosphere::{
     Aimed, Atmosphere, GROUND_ALBEDO, TOP, haze_phase, left, molecules_phase, steps,
 };
+pub use self::name::SkyError;
 use super::Environment;
 use crate::{Axes, Light, LightKind, Rgb};
 
@@ -73,6 +75,17 @@ impl Sky {
             },
             intensity: (SUNLIGHT / PI) * left,
         }
+    }
+
+    /// All its light in a scene with these axes, `panorama` around it: the [sun](Self::sun) and, for methods that do not ask the surroundings, ambient light as bright as these are in the
+    /// mean.
+    pub fn lights(&self, panorama: &Environment, axes: &Axes) -> [Light; 2] {
+        let from_all_sides = Light {
+            name: "sky".to_owned(),
+            kind: LightKind::Ambient,
+            intensity: panorama.mean_light(),
+        };
+        [self.sun(axes), from_all_sides]
     }
 
     fn is_sound(&self) -> bool {

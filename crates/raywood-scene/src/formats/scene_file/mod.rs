@@ -27,7 +27,7 @@ use self::palette::Palette;
 use self::syntax::{Source, Value};
 use super::{Format, Input, file_name};
 use crate::error::{LoadError, quoted};
-use crate::{Background, Environment, Scene, load_environment};
+use crate::{Background, Environment, Scene, Sky, load_environment};
 
 pub(super) const FORMAT: Format = Format {
     name: "scene file",
@@ -68,9 +68,10 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
         assembly.scene.cameras.push(camera);
     }
     let background = fields.read("background", view::background)?;
-    let environment = fields.read("environment", |value| environment(value, input))?;
+    let (panorama, sky) = fields.read("environment", |value| surroundings(value, input))?.unzip();
+    let sky = sky.flatten();
 
-    let has_lights = !assembly.scene.lights.is_empty();
+    let has_lights = sky.is_some() || !assembly.scene.lights.is_empty();
     let mut models = Models::new(input, up.unwrap_or(Vec3::Y), has_lights);
     for value in fields.tables("model")? {
         models.show(value, &palette, &mut assembly)?;
@@ -79,9 +80,13 @@ fn load(input: &Input<'_>) -> Result<Scene, LoadError> {
     // What the file does not say is as the first model has it that says so.
     let mut scene = assembly.finish().map_err(|message| fields.error(message))?;
     scene.up = up.or(models.first_up);
-    scene.environment = match background.is_some() || environment.is_some() {
-        true => environment,
-        false => models.scenes.iter().find_map(|model| model.environment.clone()),
+    if let (Some(sky), Some(panorama)) = (sky, &panorama) {
+        let axes = scene.axes();
+        scene.lights.extend(sky.lights(panorama, &axes));
+    }
+    scene.environment = match background {
+        None => panorama.or(models.first_environment),
+        Some(_) => panorama,
     };
     let mut backgrounds = models.scenes.iter().map(|model| model.background);
     let first = backgrounds.find(|background| *background != Background::default());
@@ -103,9 +108,17 @@ fn sphere(
     assembly.add_sphere((center, radius), material).map_err(|message| fields.error(message))
 }
 
-/// The panorama of a file.
-fn environment(value: Value<'_>, input: &Input<'_>) -> Result<Environment, LoadError> {
-    load_environment(&find(value, input)?)
+/// What is around the scene: the panorama of a file, or of a sky by formula.
+fn surroundings(
+    value: Value<'_>,
+    input: &Input<'_>,
+) -> Result<(Environment, Option<Sky>), LoadError> {
+    let Some(sky) = value.as_text().and_then(Sky::from_name) else {
+        return Ok((load_environment(&find(value, input)?)?, None));
+    };
+    let sky = sky.map_err(|error| value.error(error.to_string()))?;
+    let panorama = sky.panorama().ok_or_else(|| value.error("a sky of absurd numbers"))?;
+    Ok((panorama, Some(sky)))
 }
 
 /// The file that a text names, sought from the folder of the scene file.

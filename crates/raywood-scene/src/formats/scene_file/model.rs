@@ -17,7 +17,7 @@ use super::transform;
 use crate::error::{LoadError, quoted};
 use crate::formats::{Input, Nesting};
 use crate::load::{load_nested, read_file};
-use crate::{Material, Rgb, Scene, builtin, builtins};
+use crate::{Environment, Material, Rgb, Scene, builtin, builtins};
 
 const KEYS: [&str; 11] = [
     "file",
@@ -55,6 +55,8 @@ pub(super) struct Models<'a> {
     pub(super) scenes: Vec<Rc<Scene>>,
     /// The direction that is up in the first model that says so, as it stands.
     pub(super) first_up: Option<Vec3>,
+    /// The panorama around the first model that has one. No other is kept.
+    pub(super) first_environment: Option<Environment>,
 }
 
 impl<'a> Models<'a> {
@@ -64,7 +66,8 @@ impl<'a> Models<'a> {
         open.push(canonical(input.path));
         let nesting = Nesting { open, files: Arc::clone(&input.nesting.files) };
         let (loaded, scenes) = (HashMap::new(), Vec::new());
-        Self { input, nesting, up, has_lights, loaded, scenes, first_up: None }
+        let (first_up, first_environment) = (None, None);
+        Self { input, nesting, up, has_lights, loaded, scenes, first_up, first_environment }
     }
 
     /// Shows the model of a table.
@@ -141,6 +144,8 @@ impl<'a> Models<'a> {
             Some(name) => builtin(name).map_err(|error| file.error(error.to_string()))?,
             None => self.load_file(file)?,
         };
+        let environment = scene.environment.take();
+        self.first_environment = self.first_environment.take().or(environment);
         let warnings = std::mem::take(&mut scene.warnings);
         let of_model = |warning: String| format!("{}: {warning}", scene.name);
         assembly.scene.warnings.extend(warnings.into_iter().map(of_model));
