@@ -42,18 +42,22 @@ impl PreparedRay {
     #[inline(always)]
     pub(crate) fn of_valid(ray: &Ray) -> Self {
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-        let [dx, dy, dz] = d.map(f32::abs);
+        let (dx, dy, dz) = (d[0].abs(), d[1].abs(), d[2].abs());
         let main = usize::from(!(dx >= dy && dx >= dz)) * (1 + usize::from(dy < dz));
         let axes = AXES[2 * main + usize::from(d[main] < 0.0)];
         let [x, y, z] = axes;
-        let reciprocal = d.map(|coordinate| 1.0 / coordinate);
+        let reciprocal = [1.0 / d[0], 1.0 / d[1], 1.0 / d[2]];
         Self {
             origin: ray.origin,
             direction: ray.direction,
             t_min: ray.t_min,
             t_max: ray.t_max,
             reciprocal: reciprocal.into(),
-            entry_corners: reciprocal.map(|r| usize::from(r < 0.0)),
+            entry_corners: [
+                usize::from(reciprocal[0] < 0.0),
+                usize::from(reciprocal[1] < 0.0),
+                usize::from(reciprocal[2] < 0.0),
+            ],
             axes,
             permuted_origin: [o[x], o[y], o[z]],
             shear: [d[x] / d[z], d[y] / d[z], reciprocal[z]],

@@ -84,14 +84,15 @@ impl Slabs {
 
     #[inline(always)]
     fn with(origin: Vec3, reciprocal: Vec3, t_min: f32, errors: [f32; 3]) -> Self {
-        let products = [0, 1, 2].map(|axis| -(origin[axis] * reciprocal[axis]));
-        let error =
-            |axis: usize| products[axis].abs() * PRODUCT_ERROR + f32::MIN_POSITIVE + errors[axis];
-        let side = |r: f32| if r < 0.0 { Side::Largest } else { Side::Smallest };
+        let (x, y, z) = (
+            offsets(origin.x, reciprocal.x, errors[0]),
+            offsets(origin.y, reciprocal.y, errors[1]),
+            offsets(origin.z, reciprocal.z, errors[2]),
+        );
         Self {
             reciprocal: reciprocal.to_array(),
-            entry: [0, 1, 2].map(|axis| products[axis] - error(axis)),
-            exit: [0, 1, 2].map(|axis| products[axis] + error(axis)),
+            entry: [x.0, y.0, z.0],
+            exit: [x.1, y.1, z.1],
             t_min,
             slack: SLACK,
             sides: [side(reciprocal.x), side(reciprocal.y), side(reciprocal.z)],
@@ -190,6 +191,20 @@ impl Slabs {
         let end = far.abs().mul_add(simd.splat16(self.slack), far);
         (near.less_or_equal(end), near)
     }
+}
+
+/// What is added to the products of planes of entry and of exit along an axis. (A function and no closure for an array's `map`, which became a call.)
+#[inline(always)]
+fn offsets(origin: f32, reciprocal: f32, error: f32) -> (f32, f32) {
+    let product = -(origin * reciprocal);
+    let error = product.abs() * PRODUCT_ERROR + f32::MIN_POSITIVE + error;
+    (product - error, product + error)
+}
+
+/// On which side a ray enters boxes.
+#[inline(always)]
+fn side(reciprocal: f32) -> Side {
+    if reciprocal < 0.0 { Side::Largest } else { Side::Smallest }
 }
 
 /// The largest coordinate of a vector without NaN.

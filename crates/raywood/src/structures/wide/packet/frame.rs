@@ -49,7 +49,7 @@ impl Frame {
         Self {
             axes,
             sign,
-            origin: axes.map(|axis| origin[axis]),
+            origin: [origin[axes[0]], origin[axes[1]], origin[axes[2]]],
             offset,
             margin: 0.0,
             slack: SLACK,
