@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::{Float, Kernel, Portable, Simd};
+use super::{Float, Kernel, PLACES, Portable, Simd};
 
 /// The token of AVX2: whoever has it runs on a processor with it and FMA.
 #[derive(Clone, Copy)]
@@ -14,6 +14,7 @@ pub(crate) struct Avx2(());
 /// # Safety
 ///
 /// The level is [available](super::SimdLevel::is_available).
+#[inline(never)]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
@@ -228,6 +229,12 @@ impl Simd for Avx2 {
     type F8 = F8;
 
     #[inline(always)]
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        // SAFETY: the token.
+        unsafe { run(kernel) }
+    }
+
+    #[inline(always)]
     fn whole_numbers(self, numbers: F16) -> [u32; 16] {
         let F16([F8(low), F8(high)]) = numbers;
         // SAFETY: the token; two vectors are an array of their numbers.
@@ -273,16 +280,16 @@ impl Simd for Avx2 {
     #[inline(always)]
     fn partition(
         self,
-        numbers: &[u32; 64],
+        numbers: &[u32; PLACES],
         end: u32,
         last: u32,
-        lists: &mut [[u32; 80]; 3],
+        lists: &mut [[u32; PLACES + 16]; 3],
     ) -> [usize; 3] {
         let mut counts = [0; 3];
         let lists = lists.each_mut().map(|list| list.as_mut_ptr());
-        for start in (0..64).step_by(8) {
+        for start in (0..PLACES).step_by(8) {
             // SAFETY: the token; eight numbers from `start` on can be read. A list has at most `start` places when eight more are written to it, and
-            // room for 80.
+            // room for sixteen more than `PLACES`.
             unsafe {
                 let numbers = _mm256_loadu_si256(numbers.as_ptr().add(start).cast());
                 // There is no comparison of numbers without sign: move both to those with one.

@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
 use super::avx2::{greatest_of_eight, least_of_eight};
-use super::{BitPlaces, Float, Kernel, Simd};
+use super::{BitPlaces, Float, Kernel, PLACES, Simd};
 use crate::Vec3;
 
 /// The token of AVX-512: whoever has it runs on a processor with F, VL, DQ and BW.
@@ -16,6 +16,7 @@ pub(crate) struct Avx512(());
 /// # Safety
 ///
 /// The level is [available](super::SimdLevel::is_available).
+#[inline(never)]
 #[target_feature(enable = "avx512f,fma,avx512vl,avx512dq,avx512bw,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
@@ -208,6 +209,12 @@ impl Simd for Avx512 {
     type F8 = F8;
 
     #[inline(always)]
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        // SAFETY: the token.
+        unsafe { run(kernel) }
+    }
+
+    #[inline(always)]
     fn whole_numbers(self, numbers: F16) -> [u32; 16] {
         // SAFETY: the token; a vector is an array of its numbers.
         unsafe { std::mem::transmute(_mm512_cvttps_epi32(numbers.0)) }
@@ -368,16 +375,16 @@ impl Simd for Avx512 {
     #[inline(always)]
     fn partition(
         self,
-        numbers: &[u32; 64],
+        numbers: &[u32; PLACES],
         end: u32,
         last: u32,
-        lists: &mut [[u32; 80]; 3],
+        lists: &mut [[u32; PLACES + 16]; 3],
     ) -> [usize; 3] {
         let mut counts = [0; 3];
         let [evens, odds, lasts] = lists.each_mut().map(|list| list.as_mut_ptr().cast::<i32>());
-        for start in (0..64).step_by(16) {
+        for start in (0..PLACES).step_by(16) {
             // SAFETY: the token; sixteen numbers from `start` on can be read. A list has at most `start` places when sixteen more are written to it,
-            // and room for 80.
+            // and room for sixteen more than `PLACES`.
             unsafe {
                 let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
                 let places = _mm512_add_epi32(lanes, _mm512_set1_epi32(start as i32));

@@ -30,7 +30,7 @@ pub(crate) use bit_places::BitPlaces;
 pub(crate) use claims::Claims;
 pub use level::{SimdLevel, SimdLevelError};
 pub(crate) use portable::Portable;
-pub(crate) use vector::{Float, Simd};
+pub(crate) use vector::{Float, PLACES, Simd};
 pub use vectorized::Vectorized;
 
 /// Sixteen rays as rows of eight numbers each: origin, start, direction, end.

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::{Float, Simd};
+use super::{Float, Kernel, Simd};
 use crate::minmax::{larger, smaller};
 
 /// The token of the portable level, which always exists.
@@ -106,6 +106,11 @@ impl<const N: usize> Float for Array<N> {
 impl Simd for Portable {
     type F16 = Array<16>;
     type F8 = Array<8>;
+
+    #[inline(never)]
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
+    }
 
     #[inline(always)]
     fn splat16(self, number: f32) -> Array<16> {

@@ -1,6 +1,6 @@
 //! Every level against scalar arithmetic, to the bit.
 
-use super::{BitPlaces, Float, Kernel, Simd, SimdLevel, dispatch_on};
+use super::{BitPlaces, Float, Kernel, PLACES, Simd, SimdLevel, dispatch_on};
 
 /// Numbers that tell operations apart: zeros of both signs, infinities, NaN, subnormal and usual ones.
 const NUMBERS: [f32; 16] = [
@@ -239,14 +239,14 @@ fn retaining_keeps_order_and_what_lies_within_the_limit() {
 }
 
 /// Sorts numbers into lists.
-struct Partition([u32; 64]);
+struct Partition([u32; PLACES]);
 
 impl Kernel for Partition {
     type Output = [Vec<u32>; 3];
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let mut lists = [[u32::MAX; 80]; 3];
+        let mut lists = [[u32::MAX; PLACES + 16]; 3];
         let counts = simd.partition(&self.0, u32::MAX - 2, u32::MAX, &mut lists);
         [0, 1, 2].map(|list| lists[list][..counts[list]].to_vec())
     }
@@ -256,13 +256,13 @@ impl Kernel for Partition {
 fn numbers_come_into_the_right_lists() {
     let mut state = 1u32;
     for round in 0..200 {
-        let numbers: [u32; 64] = std::array::from_fn(|_| {
+        let numbers: [u32; PLACES] = std::array::from_fn(|_| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let special = [0, 1, u32::MAX, u32::MAX - 2, u32::MAX - 4, 1 << 31, (1 << 31) + 1];
             if round == 0 { 2 } else { *special.get(state as usize >> 28).unwrap_or(&(state >> 7)) }
         });
         let places = |belongs: fn(u32) -> bool| {
-            let all = (0..64u32).filter(|&place| belongs(numbers[place as usize]));
+            let all = (0..PLACES as u32).filter(|&place| belongs(numbers[place as usize]));
             all.collect::<Vec<_>>()
         };
         let expected = [

@@ -2,8 +2,11 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::BitPlaces;
+use super::{BitPlaces, Kernel};
 use crate::Vec3;
+
+/// How many places [`Simd::partition`] tells apart.
+pub(crate) const PLACES: usize = 48;
 
 /// A vector of numbers. A set of its lanes is a number with a bit for each.
 ///
@@ -67,6 +70,9 @@ pub(crate) trait Simd: Copy {
     type F16: Float<Array = [f32; 16]>;
     /// Eight numbers.
     type F8: Float<Array = [f32; 8]>;
+
+    /// Runs a kernel as a function of its own, which has all registers to itself.
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output;
 
     /// Sixteen times the same number.
     fn splat16(self, number: f32) -> Self::F16;
@@ -173,10 +179,10 @@ pub(crate) trait Simd: Copy {
     #[inline(always)]
     fn partition(
         self,
-        numbers: &[u32; 64],
+        numbers: &[u32; PLACES],
         end: u32,
         last: u32,
-        lists: &mut [[u32; 80]; 3],
+        lists: &mut [[u32; PLACES + 16]; 3],
     ) -> [usize; 3] {
         let mut counts = [0; 3];
         for (place, &number) in numbers.iter().enumerate() {

@@ -6,15 +6,16 @@
 
 use super::flight::Flight;
 use super::node::Reference;
+use super::node_steps::NodeSteps;
 use super::ray_search::{InSingle, RaySearch};
 use super::sink::Sink;
 use super::source::Source;
 use super::{WideBvh, packet};
-use crate::simd::{Kernel, Simd, dispatch_on};
+use crate::simd::{Kernel, PLACES, Simd, dispatch_on};
 use crate::{Geometry, Hit, Ray};
 
-/// How many rays are in flight.
-const RAYS: usize = 64;
+/// How many rays are in flight: as many as hide the time that memory takes, and no more, for what belongs to them should stay in the nearest cache.
+pub(super) const RAYS: usize = PLACES;
 
 /// Finds the closest hits of many rays.
 pub(super) struct Closest<'a, R, H, const FAST: bool> {
@@ -171,17 +172,14 @@ where
                 }
             }
 
-            for &place in nodes {
-                let place = place as usize;
-                let flight = &mut flights[place];
-                if flight.is_full() {
-                    spilled.push(flight.number);
-                    currents[place] = Reference::NOTHING.0;
-                    continue;
-                }
-                let next = flight.visit::<S, ANY>(simd, tree.node(Reference(currents[place])));
-                simd.prefetch(tree.address(next));
-                currents[place] = next.0;
+            let steps =
+                NodeSteps::<Q, ANY> { tree, flights, currents: &mut currents, places: nodes };
+            let mut full = simd.apart(steps);
+            while full != 0 {
+                let place = full.trailing_zeros() as usize;
+                full &= full - 1;
+                spilled.push(flights[place].number);
+                currents[place] = Reference::NOTHING.0;
             }
 
             // Test all leaves, and then look closer where something may be hit: in double precision at what lies elsewhere in memory.

@@ -62,14 +62,21 @@ impl<Q: RaySearch> Flight<Q> {
         self.top > CAPACITY - WIDTH
     }
 
-    /// The step at a node, for a stack that is not [full](Self::is_full): puts the children that the ray meets onto the stack, and takes what is on top then.
+    /// The children of a node that the ray meets, and where it enters their boxes.
     #[inline(always)]
-    pub(super) fn visit<S: Simd, const ANY: bool>(
+    pub(super) fn meet<S: Simd>(&self, simd: S, node: &WideNode) -> (u32, S::F16) {
+        self.slabs.children_met(simd, node, self.search.t_max())
+    }
+
+    /// Puts the children that were [met](Self::meet) onto the stack, which is not [full](Self::is_full), and takes what is on top then.
+    #[inline(always)]
+    pub(super) fn push<S: Simd, const ANY: bool>(
         &mut self,
         simd: S,
         node: &WideNode,
+        met: u32,
+        near: S::F16,
     ) -> Reference {
-        let (met, near) = self.slabs.children_met(simd, node, self.search.t_max());
         let top = self.top;
         let (count, last) = if ANY {
             simd.push_chosen(met, &node.children, &mut self.items, top)

@@ -18,6 +18,7 @@ mod graft;
 pub(crate) mod linear;
 mod measure;
 mod node;
+mod node_steps;
 mod packet;
 pub(crate) mod pairs;
 pub(crate) mod parts;
