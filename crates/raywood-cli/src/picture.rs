@@ -61,6 +61,8 @@ pub(crate) struct Passes {
     pub(crate) mean_samples: f64,
     /// The relative error, if it can be estimated.
     pub(crate) noise: Option<f32>,
+    /// Whether noise was removed.
+    pub(crate) is_denoised: bool,
     pub(crate) ended: Ended,
 }
 
@@ -158,20 +160,21 @@ fn light(request: &Request<'_>, pool: &ThreadPool) -> Result<Light, Failure> {
     .map_err(failure)?;
     drop(guard);
     let noise = noise(&film);
+    let (features, layers) = beside(request, Some(&film), pool)?;
+    let denoised = features
+        .filter(|_| request.denoise)
+        .and_then(|features| pool.install(|| denoise(&film, &features)));
+    if request.denoise && denoised.is_none() {
+        print::warning("too few passes to know the noise, none is removed");
+    }
     let passes = Passes {
         samples: film.samples(),
         mean_samples: film.mean_samples(),
         noise: noise.is_finite().then_some(noise),
+        is_denoised: denoised.is_some(),
         ended,
     };
-    let (features, layers) = beside(request, Some(&film), pool)?;
-    let mut image = film.image(options.integrator.shows_light);
-    if let Some(features) = features.filter(|_| request.denoise) {
-        match pool.install(|| denoise(&film, &features)) {
-            Some(denoised) => image = denoised,
-            None => print::warning("too few passes to know the noise, none is removed"),
-        }
-    }
+    let image = denoised.unwrap_or_else(|| film.image(options.integrator.shows_light));
     Ok(Light { image, layers, stats, passes: Some(passes) })
 }
 

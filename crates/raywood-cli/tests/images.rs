@@ -83,6 +83,11 @@ fn tone_maps_and_exposures_change_what_is_shown() {
     assert!(report["lens"]["focus"].as_f64().is_some_and(|focus| focus > 0.0));
 }
 
+/// Whether a text stands anywhere in a file.
+fn contains(bytes: &[u8], text: &str) -> bool {
+    bytes.windows(text.len()).any(|window| window == text.as_bytes())
+}
+
 #[test]
 fn files_say_how_they_were_made_and_equal_pictures_are_equal_files() {
     let folder = folder("metadata");
@@ -90,9 +95,6 @@ fn files_say_how_they_were_made_and_equal_pictures_are_equal_files() {
         let output = run(&folder, &format!("{SMALL} -o {name} {options}"));
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         fs::read(folder.join(name)).expect("a picture")
-    };
-    let contains = |bytes: &[u8], text: &str| {
-        bytes.windows(text.len()).any(|window| window == text.as_bytes())
     };
     for ending in ["png", "exr", "hdr"] {
         let plain = written(&format!("a.{ending}"), "-t 1");
@@ -191,7 +193,10 @@ fn noise_is_removed_on_request() {
         let scene = "render builtin:whitted --size 64x40 -i path --exposure 0";
         let output = run(&folder, &format!("{scene} {options}"));
         assert_eq!((code(&output), stderr(&output).as_str()), (0, ""));
-        Picture::read(&folder.join("render.png")).expect("a PNG")
+        let written = folder.join("render.png");
+        let told = contains(&fs::read(&written).expect("a picture"), "raywood:denoised");
+        assert_eq!(told, options.contains("--denoise"));
+        Picture::read(&written).expect("a PNG")
     };
     let reference = picture("-n 512");
     let [before, after] =

@@ -179,7 +179,7 @@ impl ImageArgs {
 
     /// What the file says of how it was made.
     pub(super) fn metadata(&self, made: &Made<'_>) -> Vec<(String, String)> {
-        let &Made { options, samples, exposure, seconds, threads } = made;
+        let &Made { options, samples, is_denoised, exposure, seconds, threads } = made;
         let mut entries = Vec::new();
         let mut say = |name: &str, text: String| entries.push((name.to_owned(), text));
         if self.metadata == Metadata::None {
@@ -193,6 +193,9 @@ impl ImageArgs {
         say("raywood:depth", options.max_depth.to_string());
         if let Some(lens) = options.lens {
             say("raywood:lens", format!("radius {}, focus {}", lens.radius, lens.focus));
+        }
+        if is_denoised {
+            say("raywood:denoised", "yes".to_owned());
         }
         if let Some(exposure) = exposure {
             say("raywood:exposure", format!("{:+} stops", exposure.log2()));
@@ -214,6 +217,8 @@ pub(super) struct Made<'a> {
     pub(super) options: &'a RenderOptions,
     /// How many samples a pixel has.
     pub(super) samples: &'a str,
+    /// Whether noise was removed.
+    pub(super) is_denoised: bool,
     /// How much of the light is shown; of files that hold light nothing else is known.
     pub(super) exposure: Option<f32>,
     pub(super) seconds: f64,

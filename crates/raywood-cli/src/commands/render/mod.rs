@@ -231,6 +231,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     write_options.metadata = args.image.metadata(&Made {
         options: &options,
         samples: &samples,
+        is_denoised: drawn.passes.as_ref().is_some_and(|passes| passes.is_denoised),
         exposure: is_shown.then_some(drawn.exposure),
         seconds: drawn.render.elapsed.as_secs_f64(),
         threads: drawn.render.threads,
