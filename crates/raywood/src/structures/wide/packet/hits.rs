@@ -112,9 +112,11 @@ impl Packet {
             self.nearest[group] = nearest.replaced(hit, blocked).to_array();
             return (hit, possible & !hit);
         }
-        let possible = simd.splat16(0.0).less_or_equal(least) & nearest.less(depth);
+        // Lines of rays from a mirror pass by their image: that moves edges by more than rounding does.
+        let error = simd.splat16(if K::LATE { error } else { 0.0 });
+        let possible = (simd.splat16(0.0) - error).less_or_equal(least) & nearest.less(depth);
         let (late, certainly_late) = self.behind_start::<S, K>(simd, depth, tolerance, group);
-        let hit = possible & certainly_late;
+        let hit = possible & error.less_or_equal(least) & certainly_late;
         self.take(simd, hit, depth, weights, group, primitive);
         (hit, possible & late & !hit)
     }
