@@ -41,14 +41,26 @@ pub struct SurfaceTextures {
     pub emission: Option<Texture>,
 }
 
-impl SurfaceTextures {
-    /// All that there are.
-    pub fn all(&self) -> impl Iterator<Item = &Texture> {
-        let Self { color, opacity: _, opacity_map, normal, metallic_roughness, .. } = self;
-        let Self {
-            glossiness, specular_color, specular, transmission, occlusion, emission, ..
-        } = self;
-        let Self { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
+/// The textures of a reference, to be read or to be changed as that allows. No field can be forgotten: there is no `..`.
+macro_rules! all_of {
+    ($textures:expr) => {{
+        let SurfaceTextures {
+            color,
+            opacity: _,
+            opacity_map,
+            normal,
+            metallic_roughness,
+            glossiness,
+            specular_color,
+            specular,
+            transmission,
+            occlusion,
+            clearcoat,
+            clearcoat_roughness,
+            sheen_color,
+            sheen_roughness,
+            emission,
+        } = $textures;
         let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
         let others = [
             color,
@@ -65,31 +77,18 @@ impl SurfaceTextures {
             emission,
         ];
         others.into_iter().flatten().chain(numbered)
+    }};
+}
+
+impl SurfaceTextures {
+    /// All that there are.
+    pub fn all(&self) -> impl Iterator<Item = &Texture> {
+        all_of!(self)
     }
 
     /// All that there are, to be changed.
     pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Texture> {
-        let Self { color, opacity: _, opacity_map, normal, metallic_roughness, .. } = self;
-        let Self {
-            glossiness, specular_color, specular, transmission, occlusion, emission, ..
-        } = self;
-        let Self { clearcoat, clearcoat_roughness, sheen_color, sheen_roughness, .. } = self;
-        let numbered = [normal, occlusion].into_iter().flatten().map(|(texture, _)| texture);
-        let others = [
-            color,
-            opacity_map,
-            metallic_roughness,
-            glossiness,
-            specular_color,
-            specular,
-            transmission,
-            clearcoat,
-            clearcoat_roughness,
-            sheen_color,
-            sheen_roughness,
-            emission,
-        ];
-        others.into_iter().flatten().chain(numbered)
+        all_of!(self)
     }
 }
 
