@@ -46,8 +46,8 @@ impl<Q: RaySearch, const ANY: bool> Kernel for NodeSteps<'_, Q, ANY> {
     }
 }
 
-/// The children of a node that a ray meets.
-struct Meeting<'t, F> {
+/// A ray at a node, and which of the children it meets.
+struct AtNode<'t, F> {
     place: usize,
     node: &'t WideNode,
     met: u32,
@@ -62,9 +62,9 @@ fn meet<'t, S: Simd, Q: RaySearch>(
     flights: &[Flight<Q>],
     currents: &[u32; RAYS],
     place: u32,
-) -> Meeting<'t, S::F16> {
+) -> AtNode<'t, S::F16> {
     let place = place as usize;
     let node = tree.node(Reference(currents[place]));
     let (met, near) = flights[place].meet(simd, node);
-    Meeting { place, node, met, near }
+    AtNode { place, node, met, near }
 }
