@@ -1,6 +1,7 @@
 //! The axis-aligned bounding box.
 
 use crate::Vec3;
+use crate::double::dot;
 
 /// An axis-aligned box, corners included. Empty when `min` exceeds `max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +88,17 @@ impl Aabb {
     #[inline]
     pub fn diagonal(&self) -> f32 {
         if self.is_empty() { 0.0 } else { self.extent().length() }
+    }
+
+    /// How far a point is from the box, zero inside; computed in double precision and rounded once. Not of an empty box.
+    #[inline]
+    pub(crate) fn distance(&self, point: Vec3) -> f32 {
+        let beside = |axis: usize| {
+            let [min, max, p] = [self.min[axis], self.max[axis], point[axis]].map(f64::from);
+            (min - p).max(p - max).max(0.0)
+        };
+        let gaps = [beside(0), beside(1), beside(2)];
+        dot(gaps, gaps).sqrt() as f32
     }
 
     /// Half the surface area, zero when empty, in double precision, where no finite box overflows or vanishes. Ratios of areas are all

@@ -32,6 +32,24 @@ pub(crate) fn scale(factor: f64, v: Double3) -> Double3 {
     [factor * v[0], factor * v[1], factor * v[2]]
 }
 
+/// The smaller of each two coordinates.
+#[inline(always)]
+pub(crate) fn min(a: Double3, b: Double3) -> Double3 {
+    [a[0].min(b[0]), a[1].min(b[1]), a[2].min(b[2])]
+}
+
+/// The larger of each two coordinates.
+#[inline(always)]
+pub(crate) fn max(a: Double3, b: Double3) -> Double3 {
+    [a[0].max(b[0]), a[1].max(b[1]), a[2].max(b[2])]
+}
+
+/// The point of a box that is closest to `v`.
+#[inline(always)]
+pub(crate) fn clamp(v: Double3, least: Double3, greatest: Double3) -> Double3 {
+    min(max(v, least), greatest)
+}
+
 #[inline(always)]
 pub(crate) fn dot(a: Double3, b: Double3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -63,8 +63,8 @@ pub enum TriangleTest {
     /// No ray slips between triangles that share an edge, and hits of single rays are the same for every structure, to the bit.
     #[default]
     Watertight,
-    /// Rays may slip between triangles that share an edge, and hits may differ from those of other structures in the last digits. Kept to compare speeds:
-    /// other libraries test like this by default.
+    /// Rays may slip between triangles that share an edge, and hits may differ from those of other structures in the last digits, for triangles millions of times as long as they are far away by
+    /// more: then another of the hits may be told of as the closest by each kernel. Kept to compare speeds: other libraries test like this by default.
     Fast,
 }
 

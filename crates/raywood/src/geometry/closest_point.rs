@@ -4,7 +4,7 @@
 //! holds for triangles without area too, which are points or segments.
 
 use crate::Vec3;
-use crate::double::{Double3, add, cross, dot, double, scale, single, sub};
+use crate::double::{Double3, add, clamp, cross, dot, double, max, min, scale, single, sub};
 
 /// The point of one primitive that is closest to a given one: what [`Geometry::closest_point`](super::Geometry::closest_point) tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub(crate) fn closest_on_triangle(point: Vec3, corners: [Vec3; 3]) -> PrimitiveP
     }
 }
 
-/// The point of a triangle that is closest to zero, and its surface coordinates.
+/// The point of a triangle that is closest to zero, and its surface coordinates. It lies in the box of the triangle, whatever rounding does.
 #[inline]
 pub(crate) fn closest_to_zero([a, b, c]: [Double3; 3]) -> (Double3, f64, f64) {
     // The plane: the weight of a corner is the area across from it, seen along the normal.
@@ -50,6 +50,8 @@ pub(crate) fn closest_to_zero([a, b, c]: [Double3; 3]) -> (Double3, f64, f64) {
     let sum = weights[0] + weights[1] + weights[2];
     if inside && squared > 0.0 && sum > 0.0 {
         let offset = scale(dot(normal, a) / squared, normal);
+        // Rounding takes it no nearer than a box around the triangle, which may have been left out for that.
+        let offset = clamp(offset, min(min(a, b), c), max(max(a, b), c));
         return (offset, weights[1] / sum, weights[2] / sum);
     }
 
@@ -78,7 +80,7 @@ fn closest_on_segment(a: Double3, b: Double3) -> (Double3, f64) {
         (to, 1.0)
     } else {
         let s = along / length;
-        (add(from, scale(s, edge)), s)
+        (clamp(add(from, scale(s, edge)), min(from, to), max(from, to)), s)
     };
     (point, if swapped { 1.0 - s } else { s })
 }

@@ -34,8 +34,8 @@ impl<G: Geometry> Bvh<G> {
     /// finite or the distance NaN or negative.
     ///
     /// Of primitives at exactly the same distance (as it is returned) the one with the lowest number is told. The answer is the same on all levels of
-    /// instructions, and what comparing [`Geometry::closest_point`] of all primitives gives. Spheres are their
-    /// surfaces, here as for rays. About O(log N) where the point is much closer to some primitives than to most; at the centre of a
+    /// instructions, and what comparing [`Geometry::closest_point`] of all primitives gives, whose distances count as no less than those of their boxes. So the
+    /// answer's own distance as `max_distance` finds it again. Spheres are their surfaces, here as for rays. About O(log N) where the point is much closer to some primitives than to most; at the centre of a
     /// sphere of triangles O(N). A smaller `max_distance` makes it faster.
     ///
     /// ```
@@ -156,7 +156,10 @@ impl<'t, G: Geometry> Nearest<'_, 't, G> {
     /// Compares a primitive that is no triangle.
     #[inline]
     fn test(&mut self, primitive: u32) {
-        if let Some(found) = self.geometry.closest_point(primitive, self.point) {
+        if let Some(mut found) = self.geometry.closest_point(primitive, self.point) {
+            // Rounding of what is large, such as a radius, takes it no nearer than any box around it, which may have been left out for that.
+            let beside = self.geometry.bounds(primitive).distance(self.point);
+            found.distance = found.distance.max(beside);
             self.offer(primitive, found);
         }
     }

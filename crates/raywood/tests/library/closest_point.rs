@@ -161,6 +161,37 @@ impl Geometry for Opaque {
 }
 
 #[test]
+fn the_own_distance_as_a_limit_finds_it_again() {
+    let mut rng = Rng::new(31);
+    // Numbers of every size, so that most are nothing beside the largest.
+    let mut number = move || rng.range(-1.0, 1.0) * 10f32.powi(rng.below(76) as i32 - 38);
+    let mut point = move || Vec3::new(number(), number(), number());
+    for _ in 0..300 {
+        let corners = (0..60).map(|_| point()).collect::<Vec<_>>();
+        let triangles = (0..20).map(|t| [3 * t, 3 * t + 1, (3 * t + 5) % 60]).collect();
+        let first = TriangleMesh::new(corners, triangles).expect("sound");
+        let balls = (0..20).map(|_| (point(), point().x.abs())).collect();
+        let second = Spheres::new(balls).expect("sound");
+        let mut bvh = Bvh::build(Joined { first, second }).expect("it builds");
+        for level in SimdLevel::available() {
+            bvh.set_simd_level(level);
+            for _ in 0..20 {
+                let point = point();
+                let closest = bvh.closest_point(point, f32::INFINITY).expect("there is something");
+                let again = bvh.closest_point(point, closest.distance);
+                assert_eq!(again, Some(closest), "{}: {point:?}", level.name());
+            }
+        }
+    }
+    // A ball so large that what lies beside it is lost in its radius.
+    let ball = Spheres::new(vec![(Vec3::new(1.5e38, 5.5, -7.5), 1.5e38)]).expect("sound");
+    let bvh = Bvh::build(ball).expect("it builds");
+    let closest = bvh.closest_point([-2.7e13, 5.5, -7.5], f32::INFINITY).expect("a ball");
+    assert!(closest.distance >= 2.6e13, "{closest:?}");
+    assert_eq!(bvh.closest_point([-2.7e13, 5.5, -7.5], closest.distance), Some(closest));
+}
+
+#[test]
 fn what_cannot_tell_is_not_found() {
     let bvh = Bvh::build(Opaque).expect("it builds");
     assert_eq!(bvh.closest_point([0.5, 0.0, 0.0], f32::INFINITY), None);
