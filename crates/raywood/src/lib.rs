@@ -51,6 +51,7 @@ mod aabb;
 mod build;
 mod bvh;
 mod change;
+mod checksum;
 mod double;
 mod doubles;
 mod error;

@@ -31,6 +31,12 @@ unsafe impl Plain for [u32; 3] {}
 // SAFETY: three numbers in the order of their declaration, as its layout is that of C.
 unsafe impl Plain for Vec3 {}
 
+/// Items as the bytes that they are in memory.
+pub(crate) fn bytes_of<T: Plain>(items: &[T]) -> &[u8] {
+    // SAFETY: the items lie there, and every byte of them is known.
+    unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), size_of_val(items)) }
+}
+
 /// An array that never changes while it is shared. Clones share it.
 pub(crate) struct Array<T> {
     /// In the memory that `owner` holds.
@@ -80,8 +86,7 @@ impl Array<u8> {
 impl<T: Plain> Array<T> {
     /// The items as the bytes that they are in memory.
     pub(crate) fn as_bytes(&self) -> &[u8] {
-        // SAFETY: the items lie there, and every byte of them is known.
-        unsafe { std::slice::from_raw_parts(self.as_ptr().cast(), size_of_val(&**self)) }
+        bytes_of(self)
     }
 
     /// The items, to be changed, if they were made here and nobody shares them.

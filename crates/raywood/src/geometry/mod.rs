@@ -55,6 +55,7 @@ pub use surface::SurfacePoint;
 pub(crate) use swept_sphere::swept_sphere;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
+pub(crate) use triangle_mesh::{are_below, are_finite, check_count};
 pub(crate) use triangle_pair::triangles_touch;
 
 use std::sync::Arc;

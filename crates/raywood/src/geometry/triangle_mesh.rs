@@ -137,8 +137,11 @@ impl TriangleMesh {
         Self::of_arrays(positions.into(), triangles.into())
     }
 
-    /// The same of what was checked before.
-    pub(crate) fn of_sound(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
+    /// The same of what was checked before: [`are_finite`], [`are_below`], not too many.
+    pub(crate) fn of_sound(
+        positions: impl Into<Array<Vec3>>,
+        triangles: impl Into<Array<[u32; 3]>>,
+    ) -> Self {
         Self { positions: positions.into(), triangles: triangles.into() }
     }
 
@@ -148,10 +151,14 @@ impl TriangleMesh {
         triangles: Array<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         check_count(triangles.len())?;
-        check_finite(positions.iter().copied())?;
+        if !are_finite(&positions) {
+            check_finite(positions.iter().copied())?;
+        }
 
         let in_range = |index: u32| (index as usize) < positions.len();
-        if let Some(triangle) = triangles.iter().position(|t| !t.iter().all(|&i| in_range(i))) {
+        if !are_below(&triangles, positions.len())
+            && let Some(triangle) = triangles.iter().position(|t| !t.iter().all(|&i| in_range(i)))
+        {
             let index = triangles[triangle].into_iter().find(|&i| !in_range(i)).unwrap_or_default();
             return Err(MeshError::IndexOutOfRange { triangle, index, positions: positions.len() });
         }
@@ -209,8 +216,24 @@ impl TriangleMesh {
 }
 
 /// Refuses more triangles than can be numbered.
-pub(super) fn check_count(triangles: usize) -> Result<(), MeshError> {
+pub(crate) fn check_count(triangles: usize) -> Result<(), MeshError> {
     if triangles > 1 << 31 { Err(MeshError::TooManyTriangles { triangles }) } else { Ok(()) }
+}
+
+/// Whether all positions are numbers.
+pub(crate) fn are_finite(positions: &[Vec3]) -> bool {
+    // Without a branch each: the bits of what is not finite are the largest but for the sign.
+    let larger = |most: u32, x: f32| most.max(x.to_bits() << 1);
+    let most = positions
+        .iter()
+        .fold([0; 3], |[x, y, z], p| [larger(x, p.x), larger(y, p.y), larger(z, p.z)]);
+    most.iter().all(|&most| most < f32::INFINITY.to_bits() << 1)
+}
+
+/// Whether all vertices of triangles have numbers below this.
+pub(crate) fn are_below(triangles: &[[u32; 3]], positions: usize) -> bool {
+    let most = triangles.as_flattened().iter().fold(0, |most, &index| index.max(most));
+    triangles.is_empty() || (most as usize) < positions
 }
 
 /// Refuses positions that are NaN or infinite.

@@ -4,9 +4,12 @@ use std::borrow::Cow;
 
 use super::SavedTreeError;
 use super::container::{Container, array, invalid};
+use crate::checksum::checksum_and;
+use crate::geometry::{are_below, are_finite, check_count};
 use crate::simd::Arena;
+use crate::storage::Array;
 use crate::structures::{SavedWide, Unsound};
-use crate::{Aabb, Spheres, TriangleMesh, TriangleTest, Vec3, WideBvh};
+use crate::{Aabb, Spheres, TriangleMesh, TriangleTest, Vec3, WideBvh, parallel};
 
 /// What is known of the tree but its memory.
 pub(super) const TREE: &str = "tree";
@@ -23,6 +26,9 @@ pub(super) const SPHERES: &str = "spheres";
 
 /// All that are the library's own.
 pub(super) const OWN: [&str; 6] = [TREE, NODES, PARTS, POSITIONS, TRIANGLES, SPHERES];
+
+/// Those large ones of which [`read`] computes the checksum while it looks at what they hold: so memory is read once.
+pub(super) const VERIFIED_WHILE_READ: [&str; 3] = [NODES, POSITIONS, TRIANGLES];
 
 /// Bytes of the section `tree`.
 const TREE_BYTES: usize = 64;
@@ -63,27 +69,49 @@ pub(super) fn sections<'a>(
     sections
 }
 
-/// A tree and its geometry. Arrays that lie well are not copied.
+/// A tree and its geometry. Arrays that lie well are not copied. What it takes from sections that are not [`VERIFIED_WHILE_READ`] may be damaged.
 pub(super) fn read(file: &Container) -> Result<(WideBvh, TriangleMesh, Spheres), SavedTreeError> {
-    let mesh = read_mesh(file)?;
-    let spheres = read_spheres(file)?;
-    let tree = read_tree(file, mesh.triangles().len(), spheres.as_slice().len())?;
-    Ok((tree, mesh, spheres))
+    let (mesh, spheres) = (mesh_arrays(file)?, read_spheres(file)?);
+    let triangles = mesh.as_ref().map_or(0, |(_, triangles)| triangles.len());
+    let (mesh, tree) = parallel::join_if(
+        true,
+        || mesh.map_or_else(|| Ok(TriangleMesh::default()), |mesh| read_mesh(file, mesh)),
+        || read_tree(file, triangles, spheres.as_slice().len()),
+    );
+    let mesh = mesh?;
+    Ok((tree?, mesh, spheres))
 }
 
-fn read_mesh(file: &Container) -> Result<TriangleMesh, SavedTreeError> {
+/// Positions and triangles as they are in the file.
+type MeshArrays = (Array<Vec3>, Array<[u32; 3]>);
+
+/// Finds positions and triangles, if there are any.
+fn mesh_arrays(file: &Container) -> Result<Option<MeshArrays>, SavedTreeError> {
     let (positions, triangles) = match (file.range(POSITIONS), file.range(TRIANGLES)) {
         (Some(positions), Some(triangles)) => (positions, triangles),
-        (None, None) => return Ok(TriangleMesh::default()),
+        (None, None) => return Ok(None),
         (None, _) => return Err(missing(POSITIONS)),
         (_, None) => return Err(missing(TRIANGLES)),
     };
     whole_items(POSITIONS, &positions, 12)?;
     whole_items(TRIANGLES, &triangles, 12)?;
-    let start = triangles.start;
-    let mesh =
-        TriangleMesh::of_arrays(file.bytes().within(positions), file.bytes().within(triangles));
-    mesh.map_err(|error| invalid(TRIANGLES, start, error.to_string()))
+    Ok(Some((file.bytes().within(positions), file.bytes().within(triangles))))
+}
+
+fn read_mesh(
+    file: &Container,
+    (positions, triangles): MeshArrays,
+) -> Result<TriangleMesh, SavedTreeError> {
+    let (sum, finite) = checksum_and(&positions, are_finite);
+    file.compare(POSITIONS, sum)?;
+    let (sum, below) = checksum_and(&triangles, |piece| are_below(piece, positions.len()));
+    file.compare(TRIANGLES, sum)?;
+    if finite && below && check_count(triangles.len()).is_ok() {
+        return Ok(TriangleMesh::of_sound(positions, triangles));
+    }
+    let start = file.range(TRIANGLES).map_or(0, |range| range.start);
+    TriangleMesh::of_arrays(positions, triangles)
+        .map_err(|error| invalid(TRIANGLES, start, error.to_string()))
 }
 
 fn read_spheres(file: &Container) -> Result<Spheres, SavedTreeError> {
@@ -140,10 +168,13 @@ fn read_tree(
         arena: Arena::within(file.bytes(), nodes.clone()),
         parts: read_parts(file, primitives as usize)?,
     };
-    WideBvh::from_saved(saved, triangles as u32).map_err(|Unsound { line, problem }| match line {
+    let tree = WideBvh::from_saved(saved, triangles as u32);
+    let (tree, sum) = tree.map_err(|Unsound { line, problem }| match line {
         Some(line) => invalid(NODES, nodes.start + 64 * line, problem),
         None => invalid(TREE, header.start, problem),
-    })
+    })?;
+    file.compare(NODES, sum)?;
+    Ok(tree)
 }
 
 /// A bit for each primitive, or nothing.

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::claims::Claims;
 use super::huge_pages;
 use crate::parallel;
-use crate::storage::{Array, Plain};
+use crate::storage::{Array, Plain, bytes_of};
 
 /// Plain numbers that fill whole cache lines.
 ///
@@ -62,6 +62,15 @@ impl Arena {
     /// All lines, as the bytes that they are in memory.
     pub(crate) fn as_bytes(&self) -> &[u8] {
         self.0.as_bytes()
+    }
+
+    /// Some lines, as the bytes that they are in memory.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many.
+    pub(crate) fn bytes_of(&self, lines: Range<usize>) -> &[u8] {
+        bytes_of(&self.0[lines])
     }
 
     /// The thing whose first line has this number.

@@ -40,7 +40,9 @@ impl WideBvh {
     ///
     /// Whatever it holds, no query of the tree that comes out panics, reads what it must not, or takes longer than one of some tree as large. That boxes and triangles are those
     /// of the geometry is not known: see [`validate`](crate::AccelerationStructure::validate).
-    pub(crate) fn from_saved(saved: SavedWide, triangles: u32) -> Result<Self, Unsound> {
+    ///
+    /// Besides it tells the checksum of the memory, which is read only once for both.
+    pub(crate) fn from_saved(saved: SavedWide, triangles: u32) -> Result<(Self, u32), Unsound> {
         let SavedWide { bounds, primitives, triangle_test, root, arena, parts } = saved;
         let parts = Parts::from_bits(parts, &bounds);
         let mut tree = Self {
@@ -54,7 +56,8 @@ impl WideBvh {
             arena,
             level: SimdLevel::active(),
         };
-        tree.depth = check(&tree, triangles)?;
-        Ok(tree)
+        let checked = check(&tree, triangles)?;
+        tree.depth = checked.depth;
+        Ok((tree, checked.checksum))
     }
 }

@@ -4,12 +4,14 @@
 //! each in the box that it should be in. In contrast to `check.rs`, which asks whether a tree is right for a geometry, this looks at each byte once, as far as it can in the order in
 //! which they lie in memory: loading a tree should hardly take longer than reading it.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::WideBvh;
 use super::collapse::{BLOCK_LINES, NODE_LINES};
 use super::node::{Reference, WideNode};
 use super::search::lanes;
+use crate::checksum::Checksum;
 use crate::geometry::TriangleBlock;
 use crate::simd::{Float, Kernel, Simd, dispatch_on};
 use crate::structures::MAX_DEPTH;
@@ -24,47 +26,105 @@ pub(crate) struct Unsound {
 }
 
 /// So many nodes wait before threads take them.
-const TASKS: usize = 64;
+const TASKS: usize = 128;
+
+/// Into so many stretches of memory the tree is divided at most, for threads to take.
+const STRETCHES: usize = 64;
 
 /// How many lines ahead memory is asked for: some hundred nanoseconds of work.
 const AHEAD: usize = 64;
 
-/// How many nodes lie on the longest way from the root to a leaf of a sound tree over primitives of which the first so many are triangles. O(N), on all threads.
-pub(super) fn check(tree: &WideBvh, triangles: u32) -> Result<usize, Unsound> {
+/// So many lines the checksum reads at a time, and has read ahead of what is looked at: half of what a core's own cache holds.
+const READ_AHEAD: usize = (1 << 18) / 64;
+
+/// What is found out of a tree that is sound.
+pub(super) struct Checked {
+    /// How many nodes lie on the longest way from the root to a leaf.
+    pub(super) depth: usize,
+    /// The checksum of its memory.
+    pub(super) checksum: u32,
+}
+
+/// Looks at all of a tree over primitives of which the first so many are triangles. O(N), on all threads.
+pub(super) fn check(tree: &WideBvh, triangles: u32) -> Result<Checked, Unsound> {
     if (tree.root == Reference::NOTHING) != (tree.primitives == 0) {
         return unsound(None, "primitives without a root, or a root without primitives");
     }
     if tree.root == Reference::NOTHING {
         return match tree.bounds == Aabb::EMPTY && tree.arena.len() == 0 {
-            true => Ok(0),
+            true => Ok(Checked { depth: 0, checksum: Checksum::of_all([]) }),
             false => unsound(None, "nothing has a box or memory"),
         };
     }
     if !tree.bounds.is_finite() || tree.bounds.is_empty() {
         return unsound(None, "the box around everything is empty or not finite");
     }
-
-    let words = tree.arena.len().div_ceil(64);
-    let walk = |reached: &[AtomicU64], pending, most| {
-        dispatch_on(tree.level, Walk { tree, triangles, reached, pending, most, deepest: 0 })
-    };
-    let walk_all = |most| {
-        let reached: Vec<_> = (0..words).map(|_| AtomicU64::new(0)).collect();
-        // What refers to the root is like a node without other children.
-        let mut above = WideNode::EMPTY;
-        above.set(0, &tree.bounds, tree.root);
-        let mut first =
-            Walk { tree, triangles, reached: &reached, pending: Vec::new(), most, deepest: 0 };
-        first.enter_root(&above)?;
-        let (mut deepest, pending) = walk(&reached, first.pending, most)?;
-        let walks = parallel::map_tasks(pending, |node| walk(&reached, vec![node], usize::MAX));
-        for walk in walks {
-            deepest = deepest.max(walk?.0);
-        }
-        Ok(deepest)
-    };
     // Which of two references to a node is the second depends on threads; what is said of it must not.
-    walk_all(TASKS).or_else(|_: Unsound| walk_all(usize::MAX))
+    check_in_stretches(tree, triangles, TASKS)
+        .or_else(|_: Unsound| check_in_stretches(tree, triangles, 1))
+}
+
+/// The same of a tree with a root, in one stretch of memory if not more than one node is to wait, else in several at once.
+fn check_in_stretches(tree: &WideBvh, triangles: u32, tasks: usize) -> Result<Checked, Unsound> {
+    let words = tree.arena.len().div_ceil(64);
+    let reached: Vec<_> = (0..words).map(|_| AtomicU64::new(0)).collect();
+    let walk = |pending, lines| Walk {
+        tree,
+        triangles,
+        reached: &reached,
+        pending,
+        unread: lines,
+        checksum: Checksum::default(),
+        deepest: 0,
+    };
+
+    // What refers to the root is like a node without other children.
+    let mut above = WideNode::EMPTY;
+    above.set(0, &tree.bounds, tree.root);
+    let mut crown = walk(Vec::new(), 0..0);
+    dispatch_on(tree.level, Root { walk: &mut crown, above: &above })?;
+    while crown.pending.len() < tasks && !crown.pending.is_empty() {
+        dispatch_on(tree.level, Level(&mut crown))?;
+    }
+
+    let stretches = stretches(tree, crown.pending, STRETCHES.min(tasks));
+    let walks = parallel::map_tasks(stretches, |(pending, lines)| {
+        dispatch_on(tree.level, walk(pending, lines))
+    });
+    let (mut depth, mut checksums) = (crown.deepest, Vec::with_capacity(walks.len()));
+    for walk in walks {
+        let (deepest, checksum) = walk?;
+        depth = depth.max(deepest);
+        checksums.push(checksum);
+    }
+    Ok(Checked { depth, checksum: Checksum::of_all(checksums) })
+}
+
+/// All lines in stretches of about the same size, each with the nodes that wait and what is below them there, the last one first.
+fn stretches(
+    tree: &WideBvh,
+    mut pending: Vec<Pending>,
+    most: usize,
+) -> Vec<(Vec<Pending>, Range<usize>)> {
+    let lines = tree.arena.len();
+    let first_below =
+        |node: &Pending| first_below(tree.node(Reference::node(node.line))).min(lines);
+    pending.sort_by_cached_key(first_below);
+    let size = lines.div_ceil(most);
+    let mut stretches = vec![(Vec::new(), 0..lines)];
+    for node in pending {
+        let start = first_below(&node);
+        let last = stretches.len() - 1;
+        let (nodes, stretch) = &mut stretches[last];
+        if start - stretch.start >= size && !nodes.is_empty() {
+            stretch.end = start;
+            stretches.push((vec![node], start..lines));
+        } else {
+            nodes.push(node);
+        }
+    }
+    stretches.iter_mut().for_each(|(nodes, _)| nodes.reverse());
+    stretches
 }
 
 /// Something that is wrong.
@@ -73,7 +133,7 @@ fn unsound<T>(line: Option<usize>, problem: impl Into<String>) -> Result<T, Unso
     Err(Unsound { line, problem: problem.into() })
 }
 
-/// A walk through a part of the tree. Ends when so many nodes wait, if not at its end, and tells how deep it came and which wait.
+/// A walk through a part of the tree. Tells how deep it came, and the checksum of a stretch of memory, which is read just before most of what lies there is looked at.
 struct Walk<'a> {
     tree: &'a WideBvh,
     /// How many primitives are triangles: the first.
@@ -81,7 +141,9 @@ struct Walk<'a> {
     /// By their first lines the nodes that something refers to, a bit each.
     reached: &'a [AtomicU64],
     pending: Vec<Pending>,
-    most: usize,
+    /// The lines that the checksum has yet to read.
+    unread: Range<usize>,
+    checksum: Checksum,
     deepest: usize,
 }
 
@@ -95,22 +157,34 @@ struct Pending {
 }
 
 impl Kernel for Walk<'_> {
-    type Output = Result<(usize, Vec<Pending>), Unsound>;
+    type Output = Result<(usize, Checksum), Unsound>;
 
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) -> Self::Output {
-        while self.pending.len() < self.most
-            && let Some(Pending { line, bounds, depth }) = self.pending.pop()
-        {
-            self.deepest = self.deepest.max(depth);
-            let node = self.tree.node(Reference::node(line));
+        while let Some(node) = self.pending.pop() {
             // Most nodes have only leaves below them: then this one is next.
             if let Some(next) = self.pending.last() {
                 simd.prefetch(self.tree.arena.address(next.line));
             }
-            self.look_into(simd, Some(line), node, &bounds, depth)?;
+            let first = first_below(self.tree.node(Reference::node(node.line)));
+            self.read_up_to(first + READ_AHEAD);
+            self.look_below(simd, &node)?;
         }
-        Ok((self.deepest, self.pending))
+        self.read_up_to(usize::MAX);
+        Ok((self.deepest, self.checksum))
+    }
+}
+
+/// The nodes that wait, and not what is below them.
+struct Level<'a, 'b>(&'a mut Walk<'b>);
+
+impl Kernel for Level<'_, '_> {
+    type Output = Result<(), Unsound>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let nodes = std::mem::take(&mut self.0.pending);
+        nodes.iter().try_for_each(|node| self.0.look_below(simd, node))
     }
 }
 
@@ -131,9 +205,23 @@ impl Kernel for Root<'_, '_> {
 }
 
 impl Walk<'_> {
-    /// Looks at what the root is.
-    fn enter_root(&mut self, above: &WideNode) -> Result<(), Unsound> {
-        dispatch_on(self.tree.level, Root { walk: self, above })
+    /// Has the checksum read the lines before this one, and some more.
+    #[inline(always)]
+    fn read_up_to(&mut self, line: usize) {
+        while self.unread.start < self.unread.end.min(line) {
+            let end = self.unread.end.min(self.unread.start + READ_AHEAD);
+            self.checksum.read(self.tree.arena.bytes_of(self.unread.start..end));
+            self.unread.start = end;
+        }
+    }
+
+    /// Looks at what is below a node.
+    #[inline(always)]
+    fn look_below<S: Simd>(&mut self, simd: S, node: &Pending) -> Result<(), Unsound> {
+        let &Pending { line, bounds, depth } = node;
+        self.deepest = self.deepest.max(depth);
+        let node = self.tree.node(Reference::node(line));
+        self.look_into(simd, Some(line), node, &bounds, depth)
     }
 
     /// Looks at the children of a node that is to lie in a box; those that are nodes wait from then on.
@@ -263,6 +351,14 @@ impl Walk<'_> {
             None => "a triangle is not in its leaf's box, or a ball is not finite".to_owned(),
         }
     }
+}
+
+/// The first line of what is below a node: its blocks, then its children side by side, then what is below each.
+#[inline(always)]
+fn first_below(node: &WideNode) -> usize {
+    // Nothing has the largest number of all.
+    let first = node.children.iter().fold(u32::MAX, |first, &child| first.min(child));
+    Reference(first).line()
 }
 
 /// The lanes of a node without a child, and those with leaves.
