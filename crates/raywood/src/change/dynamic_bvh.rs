@@ -1,7 +1,7 @@
 //! A tree that follows a geometry which changes from picture to picture, and looks after its own quality. When a tree is to be built anew follows Lauterbach, Yoon, Tuft and
 //! Manocha, "RT-DEFORM: Interactive Ray Tracing of Dynamic Scenes using BVHs", 2006: not after so many pictures, but when the cost by the surface area heuristic has grown.
 
-use super::{Decision, RefitError, Update, UpdateOptions};
+use super::{Decision, RefitError, Update, UpdateOptions, check_primitives};
 use crate::structures::AccelerationStructure;
 use crate::structures::wide::Measured;
 use crate::{BuildError, Bvh, Geometry, SimdLevel, WideBvh};
@@ -9,7 +9,7 @@ use crate::{BuildError, Bvh, Geometry, SimdLevel, WideBvh};
 /// A [`Bvh`] over a geometry that changes.
 ///
 /// [`update`](Self::update) does what is needed to follow it: most often new boxes, which takes a twentieth of the time of a build; where the tree has become bad in places, these are built
-/// anew; and all of it, if it is bad in general or there are other primitives. What it has decided by which numbers it tells.
+/// anew; and all of it, if it is bad in general or too much has come and gone. What it has decided by which numbers it tells.
 ///
 /// ```
 /// use raywood::{Decision, DynamicBvh, Ray, TriangleMesh};
@@ -39,6 +39,18 @@ pub struct DynamicBvh<G> {
     built: Measured,
     /// How many primitives were in what was repaired since all was built.
     repaired: usize,
+    /// The number of the first primitive that has come since all was built: they are all kept together.
+    first_new: usize,
+}
+
+/// A tree in which primitives were exchanged.
+struct Exchange {
+    tree: WideBvh,
+    decision: Decision,
+    /// What the tree counts as having cost when it was built.
+    built: Measured,
+    /// How many primitives were in what was repaired then.
+    repaired: usize,
 }
 
 impl<G: Geometry> DynamicBvh<G> {
@@ -59,7 +71,8 @@ impl<G: Geometry> DynamicBvh<G> {
     pub fn build_with(geometry: G, options: UpdateOptions) -> Result<Self, BuildError> {
         let bvh = Bvh::build_with(geometry, &options.build)?;
         let built = bvh.tree().measured();
-        Ok(Self { bvh, options, built, repaired: 0 })
+        let first_new = bvh.geometry().len();
+        Ok(Self { bvh, options, built, repaired: 0, first_new })
     }
 
     /// The tree with its geometry and all queries.
@@ -84,6 +97,27 @@ impl<G: Geometry> DynamicBvh<G> {
 
     /// Puts a geometry in the place of the one before, and has the tree follow. Hits are those of a tree that is built over it, whatever is decided.
     ///
+    /// There may be more primitives than before or fewer: these have the highest numbers, and all others keep theirs and are where they were or have moved. So who takes one out puts the last one in its
+    /// place, which then has moved. If few come or go, only the parts of the tree that they are in are built anew, which is told as [`Decision::Repaired`].
+    ///
+    /// ```
+    /// use raywood::{Decision, DynamicBvh, Ray, Spheres, Vec3};
+    ///
+    /// let mut balls: Vec<_> = (0..1000).map(|i| (Vec3::new(3.0 * (i % 30) as f32, 3.0 * (i / 30) as f32, 0.0), 1.0)).collect();
+    /// let mut scene = DynamicBvh::build(Spheres::new(balls.clone())?)?;
+    ///
+    /// balls.push((Vec3::new(-5.0, 0.0, 0.0), 1.0));
+    /// let update = scene.update(Spheres::new(balls.clone())?)?;
+    /// assert!(matches!(update.decision, Decision::Repaired { .. }));
+    /// let ray = Ray::new([-5.0, 0.0, 9.0], [0.0, 0.0, -1.0]);
+    /// assert_eq!(scene.bvh().intersect(&ray).map(|hit| hit.primitive), Some(1000));
+    ///
+    /// balls.pop();
+    /// scene.update(Spheres::new(balls)?)?;
+    /// assert!(!scene.bvh().occluded(&ray));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// O(N) in parallel in the caller's rayon pool for new boxes and the measurement that goes with them; O(N) and O(k log k) for `k` primitives in subtrees that are built anew; O(N log N)
     /// for all of them. The decision, and the tree, is the same for any number of threads.
     ///
@@ -92,12 +126,15 @@ impl<G: Geometry> DynamicBvh<G> {
     /// As [`Bvh::build`]. Of a geometry with a box that is empty or not finite nothing is taken on. If memory is too short to build anew, or not allowed, the tree has taken on
     /// the geometry with new boxes alone if there are as many primitives as before; else it stays as it was.
     pub fn update(&mut self, geometry: G) -> Result<Update, BuildError> {
+        if geometry.len() != self.bvh.geometry.len() {
+            return self.update_others(geometry);
+        }
         let refitted = match self.bvh.tree.refit_measured(&geometry) {
             Ok(refitted) => refitted,
             Err(RefitError::BadBounds { primitive, bounds }) => {
                 return Err(BuildError::BadBounds { primitive, bounds });
             }
-            // Other primitives, or a tree that was never one.
+            // A tree that was never one.
             Err(_) => {
                 self.bvh.tree = self.built_over(&geometry)?;
                 self.bvh.geometry = geometry;
@@ -116,6 +153,68 @@ impl<G: Geometry> DynamicBvh<G> {
         }
         self.bvh.tree = self.built_over(&self.bvh.geometry)?;
         Ok(self.rebuilt(refitted.cost))
+    }
+
+    /// Takes on a geometry with more or fewer primitives.
+    fn update_others(&mut self, geometry: G) -> Result<Update, BuildError> {
+        if let Err(RefitError::BadBounds { primitive, bounds }) =
+            check_primitives(&geometry, geometry.len())
+        {
+            return Err(BuildError::BadBounds { primitive, bounds });
+        }
+        let Some(Exchange { mut tree, decision, built, repaired }) = self.exchange(&geometry)?
+        else {
+            self.bvh.tree = self.built_over(&geometry)?;
+            self.bvh.geometry = geometry;
+            return Ok(self.rebuilt(f64::INFINITY));
+        };
+        // What is in other parts of the tree may have moved.
+        let refitted = tree.refit_measured(&geometry);
+        let Some(Measured { cost, .. }) =
+            refitted.ok().filter(|refitted| refitted.cost <= self.limit(built.cost))
+        else {
+            self.bvh.tree = self.built_over(&geometry)?;
+            self.bvh.geometry = geometry;
+            return Ok(self.rebuilt(f64::INFINITY));
+        };
+        let count = geometry.len();
+        self.first_new = self.first_new.min(count);
+        (self.bvh.tree, self.bvh.geometry) = (tree, geometry);
+        let built_cost = built.cost;
+        (self.built, self.repaired) = (built, repaired);
+        Ok(Update { decision, built_cost, refitted_cost: f64::INFINITY, cost })
+    }
+
+    /// A tree without the primitives that are gone and with those that are new, all others still where they were; `None` if too much of it would be built.
+    fn exchange(&self, geometry: &G) -> Result<Option<Exchange>, BuildError> {
+        let (before, now) = (self.bvh.geometry.len(), geometry.len());
+        let build = &self.options.build;
+        // Who limits the memory wants to be asked before it is taken.
+        if now > BuildError::MAX_PRIMITIVES || build.memory_limit.is_some() {
+            return Ok(None);
+        }
+        // What is new comes together with what was new before: one tree of all that, not one beside the other.
+        let tree = &self.bvh.tree;
+        let from = if now > before { self.first_new } else { now };
+        let chosen = tree.cuttings_from(from as u32);
+        let mut primitives = tree.primitives_in(&chosen);
+        primitives.retain(|&primitive| (primitive as usize) < now);
+        primitives.extend(before as u32..now as u32);
+        let repaired = self.repaired + primitives.len();
+        if repaired as f64 > self.options.max_repair_share * now as f64 {
+            return Ok(None);
+        }
+        let cost_before = tree.measured().cost;
+        let Some(tree) = tree.with_new_bough(geometry, (&chosen, &primitives), build)? else {
+            return Ok(None);
+        };
+
+        // By how much the tree has become worse since it was built does not change with what comes and goes.
+        let Measured { cost, cuttings } = tree.measured();
+        let built = Measured { cost: cost * (self.built.cost / cost_before), cuttings };
+        let subtrees = chosen.iter().filter(|is_chosen| **is_chosen).count();
+        let decision = Decision::Repaired { subtrees, primitives: primitives.len() };
+        Ok(Some(Exchange { tree, decision, built, repaired }))
     }
 
     /// How much may be expected of what cost so much when it was built.
@@ -169,6 +268,7 @@ impl<G: Geometry> DynamicBvh<G> {
     fn rebuilt(&mut self, refitted_cost: f64) -> Update {
         self.built = self.bvh.tree.measured();
         self.repaired = 0;
+        self.first_new = self.bvh.geometry.len();
         let cost = self.built.cost;
         Update { decision: Decision::Rebuilt, built_cost: cost, refitted_cost, cost }
     }

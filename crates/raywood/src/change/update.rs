@@ -30,7 +30,7 @@ pub struct Update {
     pub decision: Decision,
     /// The measure of growth from now on: what the tree cost when it was last built, of parts that were repaired since then what they cost then.
     pub built_cost: f64,
-    /// What it cost with new boxes alone; of another number of primitives, for which there are none, infinity.
+    /// What it cost with new boxes alone; where primitives came or went, for which there are none, infinity.
     pub refitted_cost: f64,
     /// What it costs now.
     pub cost: f64,
@@ -42,7 +42,7 @@ pub struct Update {
 pub enum Decision {
     /// It has new boxes.
     Refitted,
-    /// It has new boxes, and instead of the subtrees that had become worst a new one.
+    /// It has new boxes, and instead of the subtrees that had become worst, or that had primitives which are gone, a new one, with those that have come.
     Repaired {
         /// How many subtrees these were.
         subtrees: usize,

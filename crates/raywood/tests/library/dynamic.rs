@@ -135,6 +135,60 @@ fn an_explosion_is_built_anew() {
     assert!(decisions.contains(&Decision::Rebuilt), "{decisions:?}");
 }
 
+/// A mesh of triangles that share nothing.
+fn of_corners(corners: &[[Vec3; 3]]) -> TriangleMesh {
+    let triangles = (0..corners.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+    TriangleMesh::new(corners.as_flattened().to_vec(), triangles.collect()).expect("sound")
+}
+
+#[test]
+fn triangles_come_and_go() {
+    for preset in BuildPreset::ALL {
+        let all = shapes::soup(5_000, 0.05, 8);
+        let mut rest = (4_000..5_000).map(|t| all.corners(t));
+        let mut corners: Vec<_> = (0..4_000).map(|t| all.corners(t)).collect();
+        let options = UpdateOptions { build: preset.options(), ..Default::default() };
+        let mut scene = DynamicBvh::build_with(of_corners(&corners), options).expect("it builds");
+        let depth = scene.bvh().stats().depth;
+        let (mut rng, mut repaired) = (Rng::new(9), 0);
+        for step in 0..40 {
+            // One comes, one goes, some come and others move, many go.
+            match step % 4 {
+                0 => corners.extend(rest.next()),
+                1 => drop(corners.swap_remove(rng.below(corners.len()))),
+                2 => {
+                    corners.extend(rest.by_ref().take(20));
+                    for corners in &mut corners[100..200] {
+                        *corners = corners.map(|corner| corner + Vec3::splat(0.01));
+                    }
+                }
+                _ => corners.truncate(corners.len() - rng.below(15)),
+            }
+            let update = scene.update(of_corners(&corners)).expect("it is taken on");
+            repaired += usize::from(matches!(update.decision, Decision::Repaired { .. }));
+            check_costs(&scene, &update);
+            check(&scene, &format!("{preset:?}, step {step}: {update}"));
+        }
+        // Some steps change nothing, and at times too much was built since the last build.
+        assert!(repaired > 20, "{preset:?}: {repaired}");
+        let now = scene.bvh().stats().depth;
+        assert!(now <= depth + 2, "{preset:?}: {depth}, now {now}");
+    }
+}
+
+#[test]
+fn one_comes_and_one_goes_where_there_are_few() {
+    let all = shapes::soup(100, 0.5, 4);
+    let corners: Vec<_> = (0..100).map(|t| all.corners(t)).collect();
+    let mut scene = DynamicBvh::build(of_corners(&[])).expect("it builds");
+    for count in (0..100).chain((0..100).rev()) {
+        let update = scene.update(of_corners(&corners[..count])).expect("it is taken on");
+        check_costs(&scene, &update);
+        check(&scene, &format!("{count}"));
+    }
+    assert!(scene.bvh().stats().q == 0.0);
+}
+
 #[test]
 fn what_is_bad_in_one_place_is_repaired_there() {
     let soup = shapes::soup(40_000, 0.02, 3);

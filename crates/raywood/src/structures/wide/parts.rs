@@ -53,6 +53,18 @@ impl Parts {
         &self.bits
     }
 
+    /// The same of so many primitives: those that are new lie in one leaf each.
+    pub(super) fn resized(&self, primitives: usize) -> Self {
+        let mut resized = self.clone();
+        if self.exist() {
+            resized.bits.resize(primitives.div_ceil(64), 0);
+        }
+        if let (Some(last), used @ 1..) = (resized.bits.last_mut(), primitives % 64) {
+            *last &= (1 << used) - 1;
+        }
+        resized
+    }
+
     /// The same, out of this, which has none then.
     pub(super) fn take_bits(&mut self) -> Vec<u64> {
         std::mem::take(&mut self.bits)

@@ -27,6 +27,25 @@ impl WideBvh {
         primitives
     }
 
+    /// Which boughs and twigs have blocks with primitives of this number or higher ones.
+    pub(crate) fn cuttings_from(&self, first: u32) -> Vec<bool> {
+        let crown = Crown::of(self);
+        let cuttings: Vec<_> = crown.cuttings().collect();
+        parallel::map_pieces(&cuttings, 1, |cutting| {
+            let (limb, lane) = cutting[0];
+            let node = self.node(crown.limbs[limb].reference());
+            self.reaches(Reference(node.children[lane]), first)
+        })
+    }
+
+    /// Whether blocks of a subtree have such primitives, be it in lanes of other leaves, which are copied with them.
+    fn reaches(&self, root: Reference, first: u32) -> bool {
+        if root.is_leaf() {
+            return self.block(root).primitives.iter().any(|&number| number >= first);
+        }
+        self.node(root).children().any(|(_, child)| self.reaches(child, first))
+    }
+
     /// Adds the primitives in a subtree.
     fn collect(&self, root: Reference, primitives: &mut Vec<u32>) {
         if root.is_leaf() {
@@ -37,8 +56,8 @@ impl WideBvh {
         }
     }
 
-    /// The tree without those boughs and twigs that are chosen, and with a new bough over their primitives. `None` if nothing else is left, or if it would become too large or too
-    /// deep. O(k log k) for `k` primitives to build it, O(N) to copy everything, in parallel; the same for any number of threads.
+    /// The tree without those boughs and twigs that are chosen, and with a new bough over their primitives: those of these numbers. These may be others than there were, if the tree is then over all
+    /// of the geometry; where these lie that the tree had before is not looked at. `None` if nothing else is left, or if it would become too large or too deep. O(k log k) for `k` primitives to build it, O(N) to copy everything, in parallel; the same for any number of threads.
     ///
     /// # Errors
     ///
@@ -52,6 +71,9 @@ impl WideBvh {
         // Triangles are not cut, and what the memory allows was asked when all was built.
         let options = BuildOptions { spatial_splits: 0.0, memory_limit: None, ..options.clone() };
         let new = Self::build(&Gathered::of(geometry, primitives), &options)?;
+        if self.root.is_leaf() {
+            return Ok(None);
+        }
         let mut pruned = Pruned::of(self, chosen);
         if pruned.bounds().is_empty() {
             return Ok(None);
@@ -62,8 +84,10 @@ impl WideBvh {
         let old = pruned.bounds();
         let mut grafts =
             parallel::map_pieces(&pruned.boughs, 1, |bough| Graft::below(self, bough[0].line));
-        grafts.push(Graft::whole(&new, primitives));
-        let above = if free.is_some() { 0 } else { NODE_LINES };
+        if !primitives.is_empty() {
+            grafts.push(Graft::whole(&new, primitives));
+        }
+        let above = if free.is_some() || primitives.is_empty() { 0 } else { NODE_LINES };
         let lines = above + pruned.lines() + grafts.iter().map(|graft| graft.lines).sum::<usize>();
         if lines > Reference::LINES {
             return Ok(None);
@@ -74,8 +98,12 @@ impl WideBvh {
             let tasks: Vec<_> = grafts.iter().map(|graft| (graft, all.take(graft.lines))).collect();
             let copy = |(graft, part): (&Graft<'_>, Part<'_>)| graft.copy(part);
             let mut copied = parallel::map_tasks(tasks, copy);
-            let (new_root, new_depth) = copied.pop().unwrap_or((Reference::NOTHING, 0));
+            let grafted = if primitives.is_empty() { None } else { copied.pop() };
             let (old_root, old_depth) = pruned.refer_to(&copied, &places);
+            let Some((new_root, new_depth)) = grafted else {
+                pruned.put(places);
+                return (old_root, old_depth);
+            };
             if let Some(lane) = free {
                 pruned.add_below_root(lane, &new.bounds, new_root);
                 pruned.put(places);
@@ -90,6 +118,13 @@ impl WideBvh {
             (root, 1 + old_depth.max(new_depth))
         });
         let Some((arena, (root, depth))) = filled else { return Ok(None) };
-        Ok((depth <= MAX_DEPTH).then(|| Self { root, depth, arena, ..self.clone() }))
+        if depth > MAX_DEPTH {
+            return Ok(None);
+        }
+        let bounds = old.union(new.bounds);
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let parts = self.parts.resized(geometry.len());
+        let primitives = geometry.len() as u32;
+        Ok(Some(Self { root, depth, arena, bounds, reach, parts, primitives, ..self.clone() }))
     }
 }
