@@ -78,47 +78,10 @@ impl TriangleBlock {
     /// Bounds of the squares of the triangles' distances from a point, in scaled coordinates: none is less than the first or more than the second.
     #[inline(always)]
     pub(crate) fn squared_distances<S: Simd>(&self, simd: S, frame: &Frame) -> (S::F8, S::F8) {
-        let zero = simd.splat8(0.0);
         let a = self.corner_in(simd, frame, 0);
         let b = self.corner_in(simd, frame, 1);
         let c = self.corner_in(simd, frame, 2);
-        let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
-
-        // How large everything is.
-        let reach = largest(a).larger(largest(b)).larger(largest(c));
-        let longest = largest(ab).larger(largest(bc)).larger(largest(ca));
-        let square = reach * reach;
-
-        // The edges, whose error the square root of rounding divides out: a point a little beside the closest is hardly further away.
-        let edges = square_to_edge(simd, a, ab)
-            .smaller(square_to_edge(simd, b, bc))
-            .smaller(square_to_edge(simd, c, ca));
-        let edge_error = square.mul_add(simd.splat8(EDGE_ERROR), simd.splat8(UNDERFLOW));
-
-        // The plane, and on which side of each edge the point lies.
-        let normal = cross(ca, ab);
-        let area = dot(normal, normal);
-        let reciprocal = simd.splat8(1.0) / area;
-        let height = dot(normal, a);
-        let plane = height * (height * reciprocal);
-        let size = normal[0].abs() + normal[1].abs() + normal[2].abs();
-        let shape = longest * longest * size * reciprocal;
-        let plane_error = square.mul_add(shape * simd.splat8(PLANE_ERROR), edge_error);
-        let weight = dot(normal, cross(b, bc))
-            .smaller(dot(normal, cross(c, ca)))
-            .smaller(dot(normal, cross(a, ab)));
-        let weight_error = (longest * longest * (longest * reach))
-            .mul_add(simd.splat8(WEIGHT_ERROR), simd.splat8(f32::MIN_POSITIVE));
-
-        let sound = simd.splat8(LEAST_AREA).less(area);
-        let possibly_inside = (zero - weight_error).less_or_equal(weight);
-        let certainly_inside = sound & weight_error.less(weight);
-        let beside = edges - edge_error;
-        let below = beside.smaller(plane - plane_error);
-        let lower =
-            beside.replaced(possibly_inside, below).replaced(possibly_inside & !sound, zero);
-        let upper = (edges + edge_error).replaced(certainly_inside, plane + plane_error);
-        (lower.larger(zero), upper)
+        squared_distances_of(simd, [a, b, c])
     }
 
     /// The corners of one number in scaled coordinates.
@@ -133,6 +96,48 @@ impl TriangleBlock {
             simd.load8(z).mul_add(scale, simd.splat8(frame.offset[2])),
         ]
     }
+}
+
+/// Bounds of the squares of eight triangles' distances from zero: none is less than the first or more than the second. No coordinate exceeds `2^24`.
+#[inline(always)]
+pub(crate) fn squared_distances_of<S: Simd>(simd: S, [a, b, c]: [[S::F8; 3]; 3]) -> (S::F8, S::F8) {
+    let zero = simd.splat8(0.0);
+    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
+
+    // How large everything is.
+    let reach = largest(a).larger(largest(b)).larger(largest(c));
+    let longest = largest(ab).larger(largest(bc)).larger(largest(ca));
+    let square = reach * reach;
+
+    // The edges, whose error the square root of rounding divides out: a point a little beside the closest is hardly further away.
+    let edges = square_to_edge(simd, a, ab)
+        .smaller(square_to_edge(simd, b, bc))
+        .smaller(square_to_edge(simd, c, ca));
+    let edge_error = square.mul_add(simd.splat8(EDGE_ERROR), simd.splat8(UNDERFLOW));
+
+    // The plane, and on which side of each edge the point lies.
+    let normal = cross(ca, ab);
+    let area = dot(normal, normal);
+    let reciprocal = simd.splat8(1.0) / area;
+    let height = dot(normal, a);
+    let plane = height * (height * reciprocal);
+    let size = normal[0].abs() + normal[1].abs() + normal[2].abs();
+    let shape = longest * longest * size * reciprocal;
+    let plane_error = square.mul_add(shape * simd.splat8(PLANE_ERROR), edge_error);
+    let weight = dot(normal, cross(b, bc))
+        .smaller(dot(normal, cross(c, ca)))
+        .smaller(dot(normal, cross(a, ab)));
+    let weight_error = (longest * longest * (longest * reach))
+        .mul_add(simd.splat8(WEIGHT_ERROR), simd.splat8(f32::MIN_POSITIVE));
+
+    let sound = simd.splat8(LEAST_AREA).less(area);
+    let possibly_inside = (zero - weight_error).less_or_equal(weight);
+    let certainly_inside = sound & weight_error.less(weight);
+    let beside = edges - edge_error;
+    let below = beside.smaller(plane - plane_error);
+    let lower = beside.replaced(possibly_inside, below).replaced(possibly_inside & !sound, zero);
+    let upper = (edges + edge_error).replaced(certainly_inside, plane + plane_error);
+    (lower.larger(zero), upper)
 }
 
 /// The square of the distance of zero from edges, by where these begin and how they run on.

@@ -31,7 +31,7 @@ mod triangle_pair;
 mod watertight;
 
 pub use assembly::Assembly;
-pub(crate) use block_distances::Frame;
+pub(crate) use block_distances::{Frame, squared_distances_of};
 pub use boxes::Boxes;
 pub use buffers::{IndexNumber, Indices, Vertices};
 pub(crate) use candidates::Candidates;

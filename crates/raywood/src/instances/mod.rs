@@ -12,6 +12,7 @@ mod point;
 mod space;
 mod traceable;
 mod transform;
+mod view;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -6,19 +6,20 @@
 use std::ops::ControlFlow;
 
 use super::place::Placement;
+use super::view::{Limits, View};
 use super::{Tlas, Traceable, Transform};
-use crate::double::{Double3, dot, double};
-use crate::simd::{Kernel, Simd, dispatch_on};
+use crate::double::{Double3, double};
+use crate::simd::{Float, Kernel, Simd, SimdLevel, dispatch_on};
 use crate::structures::WideNode;
 use crate::structures::wide::parts::Told;
-use crate::structures::wide::search::{Leaf, Planes, Query, SearchStack, lanes, planes};
+use crate::structures::wide::search::{Leaf, Query, SearchStack, planes};
 use crate::structures::wide::top::TopQuery;
 use crate::{Bvh, Geometry, WideBvh};
 
 /// An affine transform in double precision: what transforms of several levels are together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Affine {
-    rows: [[f64; 4]; 3],
+    pub(super) rows: [[f64; 4]; 3],
 }
 
 impl Affine {
@@ -109,98 +110,57 @@ pub trait Searchable: Traceable {
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()>;
 }
 
-/// How far at least the boxes of an object's tree are from a region, when they are taken into the scene's space.
-struct Distances {
-    placed: Affine,
-    /// The region's box, larger by what rounding may move a transformed box.
-    min: Double3,
-    max: Double3,
-}
-
-/// The rounding of a transformed box, per unit of its largest term.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-impl Distances {
-    /// Those of boxes that reach no further from zero than `reach` along any axis.
-    fn new(search: &SpaceSearch<'_>, reach: f32) -> Self {
-        let SpaceSearch { min, max, placed, .. } = search;
-        let slack = |axis: usize, side: f64| {
-            let [x, y, z, moved] = placed.rows[axis].map(f64::abs);
-            ROUNDING * ((x + y + z) * f64::from(reach) + moved + side.abs())
-        };
-        Self {
-            placed: *placed,
-            min: [0, 1, 2].map(|axis| min[axis] - slack(axis, min[axis])),
-            max: [0, 1, 2].map(|axis| max[axis] + slack(axis, max[axis])),
-        }
-    }
-
-    /// The squares of these distances; infinite for children that are not there.
-    #[inline(always)]
-    fn squares(&self, planes: &Planes) -> [f64; 16] {
-        let mut squares = [0.0; 16];
-        for (axis, &[x, y, z, moved]) in self.placed.rows.iter().enumerate() {
-            // The side of a box that goes farthest down, and the one that goes farthest up.
-            let side = |factor: f64, axis: usize| {
-                let is_negative = usize::from(factor < 0.0);
-                (&planes[axis][is_negative], &planes[axis][1 - is_negative])
-            };
-            let ((x0, x1), (y0, y1), (z0, z1)) = (side(x, 0), side(y, 1), side(z, 2));
-            let (min, max) = (self.min[axis], self.max[axis]);
-            for lane in 0..16 {
-                let [x0, y0, z0] = [x0[lane], y0[lane], z0[lane]].map(f64::from);
-                let [x1, y1, z1] = [x1[lane], y1[lane], z1[lane]].map(f64::from);
-                let least = x * x0 + y * y0 + z * z0 + moved;
-                let greatest = x * x1 + y * y1 + z * z1 + moved;
-                let (above, below) = (least - max, min - greatest);
-                let gap = if above > below { above } else { below };
-                let gap = if gap > 0.0 { gap } else { 0.0 };
-                squares[lane] += gap * gap;
-            }
-        }
-        for ((square, least), greatest) in squares.iter_mut().zip(&planes[0][0]).zip(&planes[0][1])
-        {
-            *square = if least <= greatest { *square } else { f64::INFINITY };
-        }
-        squares
-    }
-
-    /// Whether the box around some corners comes as near as that.
-    #[inline(always)]
-    fn are_near(&self, corners: &[Double3; 3], limit: f64) -> bool {
-        let gap = |axis: usize| {
-            let [a, b, c] = corners.map(|corner| corner[axis]);
-            let (above, below) =
-                (a.min(b).min(c) - self.max[axis], self.min[axis] - a.max(b).max(c));
-            above.max(below).max(0.0)
-        };
-        let gaps = [gap(0), gap(1), gap(2)];
-        dot(gaps, gaps) <= limit
+impl SpaceSearch<'_> {
+    /// How what is searched now looks from the region, if it reaches no further from zero than that along any axis.
+    fn view(&self, reach: f32) -> View {
+        View::new([self.min, self.max], &self.placed, reach)
     }
 }
 
 impl<B: Searchable> Searchable for Tlas<B> {
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()> {
         let (placements, tree) = (&self.built.placements[..], &self.built.tree);
-        let distances = Distances::new(search, tree.reach());
-        tree.search(&mut SearchInstances { placements, distances, search })
+        let view = search.view(tree.reach());
+        let limits = view.limits(search.limit);
+        let level = self.level;
+        tree.search(&mut SearchInstances { placements, level, view, limits, search })
     }
 }
 
 /// A search through the instances of a scene.
 struct SearchInstances<'s, 'a, B> {
     placements: &'s [Placement<B>],
-    distances: Distances,
+    level: SimdLevel,
+    view: View,
+    limits: Limits,
     search: &'s mut SpaceSearch<'a>,
 }
 
+/// Looks at the children of a node.
+struct Children<'a> {
+    view: &'a View,
+    node: &'a WideNode,
+    limit: f32,
+}
+
+impl Kernel for Children<'_> {
+    type Output = (u32, [f32; 16]);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let (near, squares) = self.view.boxes(simd, planes(self.node), self.limit);
+        (near, squares.to_array())
+    }
+}
+
 impl<B: Searchable> TopQuery for SearchInstances<'_, '_, B> {
-    fn keys(&self, node: &WideNode) -> [f64; 16] {
-        self.distances.squares(planes(node))
+    fn children(&self, node: &WideNode) -> (u32, [f32; 16]) {
+        let (view, limit) = (&self.view, self.limits.boxes);
+        dispatch_on(self.level, Children { view, node, limit })
     }
 
-    fn limit(&self) -> f64 {
-        self.search.limit
+    fn limit(&self) -> f32 {
+        self.limits.boxes
     }
 
     fn entry(&mut self, entry: u32) -> ControlFlow<()> {
@@ -214,6 +174,7 @@ impl<B: Searchable> TopQuery for SearchInstances<'_, '_, B> {
         search.first = first + place.first;
         let flow = place.object.search(search);
         (search.placed, search.first) = (placed, first);
+        self.limits = self.view.limits(search.limit);
         flow
     }
 }
@@ -221,8 +182,7 @@ impl<B: Searchable> TopQuery for SearchInstances<'_, '_, B> {
 impl<G: Geometry + Send> Searchable for Bvh<G> {
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()> {
         let (tree, geometry) = (&self.tree, &self.geometry);
-        let distances = Distances::new(search, tree.reach());
-        dispatch_on(tree.level(), SearchTree { tree, geometry, distances, search })
+        dispatch_on(tree.level(), SearchTree { tree, geometry, search })
     }
 }
 
@@ -230,7 +190,6 @@ impl<G: Geometry + Send> Searchable for Bvh<G> {
 struct SearchTree<'s, 'a, G> {
     tree: &'s WideBvh,
     geometry: &'s G,
-    distances: Distances,
     search: &'s mut SpaceSearch<'a>,
 }
 
@@ -239,8 +198,10 @@ impl<G: Geometry> Kernel for SearchTree<'_, '_, G> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
-        let Self { tree, geometry, distances, search } = self;
-        let mut query = SearchPrimitives { geometry, distances, told: tree.told(), search };
+        let Self { tree, geometry, search } = self;
+        let view = search.view(tree.reach());
+        let limits = view.limits(search.limit);
+        let mut query = SearchPrimitives { geometry, view, limits, told: tree.told(), search };
         tree.search(simd, &mut SearchStack::new(tree), &mut query)
     }
 }
@@ -248,52 +209,54 @@ impl<G: Geometry> Kernel for SearchTree<'_, '_, G> {
 /// A search among the primitives of a tree.
 struct SearchPrimitives<'s, 'a, G> {
     geometry: &'s G,
-    distances: Distances,
+    view: View,
+    limits: Limits,
     told: Told<'s>,
     search: &'s mut SpaceSearch<'a>,
 }
 
-/// The largest number that is certainly not larger.
-#[inline(always)]
-fn rounded_down(number: f64) -> f32 {
-    let rounded = (number * (1.0 - f64::from(f32::EPSILON))) as f32;
-    if rounded < f32::MAX { rounded } else { f32::MAX }
+impl<G> SearchPrimitives<'_, '_, G> {
+    /// Nothing counts any more beyond the square of this distance.
+    fn shorten(&mut self, limit: f64) {
+        if limit != self.search.limit {
+            self.search.limit = limit;
+            self.limits = self.view.limits(limit);
+        }
+    }
 }
 
 impl<'t, G: Geometry> Query<'t> for SearchPrimitives<'_, '_, G> {
     #[inline(always)]
     fn children<S: Simd>(&mut self, simd: S, node: &WideNode) -> (u32, S::F16) {
-        let squares = self.distances.squares(planes(node));
-        let limit = self.search.limit;
-        let (mut chosen, mut keys) = (0, [0.0; 16]);
-        for lane in 0..16 {
-            let is_near = squares[lane] <= limit && squares[lane] < f64::INFINITY;
-            chosen |= u32::from(is_near) << lane;
-            keys[lane] = rounded_down(squares[lane]);
-        }
-        (chosen, simd.load16(&keys))
+        self.view.boxes(simd, planes(node), self.limits.boxes)
     }
 
     #[inline(always)]
     fn limit(&self) -> f32 {
-        (self.search.limit as f32).next_up()
+        self.limits.boxes
     }
 
     #[inline(always)]
-    fn leaf<S: Simd>(&mut self, _: S, leaf: Leaf<'t>) -> ControlFlow<()> {
-        let Self { geometry, distances, told, search } = self;
-        let instance = search.first;
-        for lane in lanes(leaf.triangles) {
-            let corners = leaf.block.corners(lane);
-            let corners = corners.map(|corner| search.placed.point(double(corner)));
-            let primitive = leaf.block.primitives[lane];
-            if distances.are_near(&corners, search.limit) && told.is_new(primitive) {
-                search.limit = search.near.triangle(corners, Numbers { instance, primitive })?;
+    fn leaf<S: Simd>(&mut self, simd: S, leaf: Leaf<'t>) -> ControlFlow<()> {
+        let instance = self.search.first;
+        if leaf.triangles != 0 {
+            let mut near = self.view.triangles(simd, leaf.block, leaf.triangles, self.limits);
+            while let Some(lane) = near.take(simd) {
+                let primitive = leaf.block.primitives[lane];
+                if self.told.is_new(primitive) {
+                    let corners = leaf.block.corners(lane);
+                    let corners = corners.map(|corner| self.search.placed.point(double(corner)));
+                    let limit =
+                        self.search.near.triangle(corners, Numbers { instance, primitive })?;
+                    self.shorten(limit);
+                    near.keep_within(simd, &self.view, self.limits);
+                }
             }
         }
         for primitive in leaf.others() {
             let numbers = Numbers { instance, primitive };
-            search.limit = search.near.other(*geometry, &search.placed, numbers)?;
+            let limit = self.search.near.other(self.geometry, &self.search.placed, numbers)?;
+            self.shorten(limit);
         }
         ControlFlow::Continue(())
     }

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use super::cost::Cost;
 use super::node::{WIDTH, WideNode};
+use super::search::lanes;
 use super::slabs::{Slabs, end_of_keys};
 use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
 use crate::structures::Bvh2;
@@ -112,7 +113,7 @@ impl TopTree {
 
     /// Has a query look into entries, those with small keys mostly first. A break ends the search.
     pub(crate) fn search<Q: TopQuery>(&self, query: &mut Q) -> ControlFlow<()> {
-        let mut waiting = Vec::with_capacity(4 * WIDTH);
+        let mut waiting: Vec<(f32, u32)> = Vec::with_capacity(4 * WIDTH);
         if !self.nodes.is_empty() {
             waiting.push((0.0, 0));
         }
@@ -125,10 +126,8 @@ impl TopTree {
                 continue;
             }
             let node = &self.nodes[(item >> 1) as usize];
-            let (keys, limit, first) = (query.keys(node), query.limit(), waiting.len());
-            let counts = |key: f64| key <= limit && key < f64::INFINITY;
-            let children = keys.into_iter().zip(node.children);
-            waiting.extend(children.filter(|&(key, _)| counts(key)));
+            let ((chosen, keys), first) = (query.children(node), waiting.len());
+            waiting.extend(lanes(chosen).map(|lane| (keys[lane], node.children[lane])));
             // The smallest is taken first.
             waiting[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         }
@@ -170,11 +169,11 @@ impl TopTree {
 
 /// What a search through the tree looks for.
 pub(crate) trait TopQuery {
-    /// The key of each child of a node; infinite where there is none.
-    fn keys(&self, node: &WideNode) -> [f64; WIDTH];
+    /// The children of a node to look into, as a set of lanes, and the key of each, which is a number.
+    fn children(&self, node: &WideNode) -> (u32, [f32; WIDTH]);
 
     /// What has a larger key need not be looked into.
-    fn limit(&self) -> f64;
+    fn limit(&self) -> f32;
 
     /// Looks into an entry.
     fn entry(&mut self, entry: u32) -> ControlFlow<()>;
