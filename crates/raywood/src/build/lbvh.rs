@@ -43,7 +43,8 @@ impl<G: Geometry> Lbvh<'_, G> {
         let count = stretch.len();
         work.check()?;
         if count <= PARALLEL_SUBTREES || count <= self.max_leaf_size {
-            let mut nodes = Vec::with_capacity(count);
+            // Twice as many nodes as leaves.
+            let mut nodes = Vec::with_capacity(count.max(2 * count / self.max_leaf_size));
             nodes.push(UNKNOWN);
             self.subdivide(stretch.reborrowed(), 0, &mut nodes);
             self.measure(&mut nodes, stretch.keys(), stretch.first());

@@ -9,10 +9,10 @@ use super::{
     BoundsMargin, Built, Instance, InstanceError, ObjectPoint, Tlas, Traceable, Transform,
 };
 use crate::structures::Bvh2;
-use crate::structures::wide::top::TopTree;
+use crate::structures::wide::top::{MOST_IN_LEAF, TopTree};
 use crate::{
-    Aabb, BuildError, BuildOptions, Geometry, Hit, PreparedRay, PrimitiveHit, Ray, SurfacePoint,
-    parallel,
+    Aabb, BuildError, BuildOptions, Builder, Geometry, Hit, PreparedRay, PrimitiveHit, Ray,
+    SurfacePoint, parallel,
 };
 
 /// An instance as rays meet it.
@@ -91,9 +91,7 @@ pub(super) fn place<B: Traceable>(instances: &[Instance<B>]) -> Result<Placed<B>
 impl<B: Traceable> Placed<B> {
     /// With a tree over the boxes that are not empty.
     pub(super) fn build(self, options: &BuildOptions) -> Result<Built<B>, InstanceError> {
-        let boxes = (0..).zip(&self.boxes).filter(|(_, bounds)| !bounds.is_empty());
-        let boxes = boxes.map(|(number, &bounds)| (number, bounds)).collect();
-        let tree = top_tree(boxes, options)?;
+        let tree = top_tree(&self.boxes, options)?;
         let built_cost = tree.cost();
         Ok(self.under(tree, built_cost))
     }
@@ -109,16 +107,36 @@ impl<B: Traceable> Placed<B> {
 const ROUNDED: f64 = 1.0 + 1e-6;
 
 /// Boxes as a geometry, for builders.
-struct Boxes(Vec<(u32, Aabb)>);
+struct Boxes<'a> {
+    boxes: &'a [Aabb],
+    /// The numbers of those that are not empty, if some are.
+    full: Option<Vec<u32>>,
+}
 
-impl Geometry for Boxes {
+impl<'a> Boxes<'a> {
+    /// Those that are not empty.
+    fn of(boxes: &'a [Aabb]) -> Self {
+        let is_full = |number: &u32| !boxes[*number as usize].is_empty();
+        let numbers = 0..boxes.len() as u32;
+        let some_empty = boxes.iter().any(Aabb::is_empty);
+        Self { boxes, full: some_empty.then(|| numbers.filter(is_full).collect()) }
+    }
+
+    /// The number of a box among all.
+    #[inline(always)]
+    fn number(&self, primitive: u32) -> u32 {
+        self.full.as_ref().map_or(primitive, |full| full[primitive as usize])
+    }
+}
+
+impl Geometry for Boxes<'_> {
     fn len(&self) -> usize {
-        self.0.len()
+        self.full.as_ref().map_or(self.boxes.len(), Vec::len)
     }
 
     #[inline(always)]
     fn bounds(&self, primitive: u32) -> Aabb {
-        self.0[primitive as usize].1
+        self.boxes[self.number(primitive) as usize]
     }
 
     fn intersect(&self, _: u32, _: &PreparedRay) -> Option<PrimitiveHit> {
@@ -130,26 +148,29 @@ impl Geometry for Boxes {
     }
 }
 
-/// The tree over the boxes of numbered instances.
-fn top_tree(boxes: Vec<(u32, Aabb)>, options: &BuildOptions) -> Result<TopTree, InstanceError> {
-    let options = BuildOptions {
+/// The tree over the boxes of instances, those that are empty left out.
+fn top_tree(boxes: &[Aabb], options: &BuildOptions) -> Result<TopTree, InstanceError> {
+    let mut options = BuildOptions {
         max_leaf_size: 1,
         reinsertion_passes: Some(options.reinsertion_passes.unwrap_or(REINSERTION_PASSES)),
         ..options.clone()
     };
-    let boxes = Boxes(boxes);
+    // What lies side by side on the curve needs no tree as long as one node holds it: most of the time goes into such small trees.
+    if options.wide_builder == Builder::Lbvh && !options.improves() {
+        options.max_leaf_size = MOST_IN_LEAF;
+    }
+    let boxes = Boxes::of(boxes);
     let tree =
         Bvh2::build_by(options.wide_builder, &boxes, &options).map_err(|error| match error {
             BuildError::TooManyPrimitives { primitives } => {
                 InstanceError::TooManyInstances { instances: primitives }
             }
-            BuildError::BadBounds { primitive, bounds } => InstanceError::BadBounds {
-                instance: boxes.0[primitive as usize].0 as usize,
-                bounds,
-            },
+            BuildError::BadBounds { primitive, bounds } => {
+                InstanceError::BadBounds { instance: boxes.number(primitive) as usize, bounds }
+            }
             error => InstanceError::Build(error),
         })?;
-    Ok(TopTree::of(&tree, |entry| boxes.0[entry as usize].0))
+    Ok(TopTree::of(&tree, |entry| (boxes.number(entry), boxes.bounds(entry))))
 }
 
 /// How often the top-level tree is improved by reinsertion unless the options say it.
@@ -165,9 +186,11 @@ impl<B: Traceable> Placement<B> {
         }
         // What rounding moves a ray in the object's space, and what a ray there may pass beside the object's box, both as the world sees it.
         let (inner, distance) = (object.bounds_margin(), inverse.distance());
-        let inner_share = inner.share * transform.stretch() * inverse.stretch() * ROUNDED;
-        let inner_length = inner.length * transform.stretch() * ROUNDED;
-        let share = RAY_ERROR * inverse.condition + inner_share;
+        let (mut share, mut inner_length) = (RAY_ERROR * inverse.condition, 0.0);
+        if inner != BoundsMargin::NONE {
+            share += inner.share * transform.stretch() * inverse.stretch() * ROUNDED;
+            inner_length = inner.length * transform.stretch() * ROUNDED;
+        }
         let margin = BoundsMargin { share, length: share * distance + inner_length };
         (transform.bounds(&bounds), margin)
     }

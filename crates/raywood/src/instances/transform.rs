@@ -208,21 +208,21 @@ impl Transform {
         if bounds.is_empty() {
             return Aabb::EMPTY;
         }
+        // By centre and half width, so that nothing depends on the signs of coefficients, which nobody can foresee.
         let (low, high) = (double(bounds.min), double(bounds.max));
+        let side = |axis: usize| (0.5 * (low[axis] + high[axis]), 0.5 * (high[axis] - low[axis]));
+        let [(x, dx), (y, dy), (z, dz)] = [side(0), side(1), side(2)];
+        let (center, half) = ([x, y, z], [dx, dy, dz]);
+        let largest = [x.abs() + dx, y.abs() + dy, z.abs() + dz];
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
-        for (axis, row) in self.rows.iter().enumerate() {
-            let (mut least, mut greatest) = (f64::from(row[3]), f64::from(row[3]));
-            let mut error = 0.0;
-            for column in 0..3 {
-                let factor = f64::from(row[column]);
-                let (a, b) = (factor * low[column], factor * high[column]);
-                least += if a < b { a } else { b };
-                greatest += if a < b { b } else { a };
-                error += if a.abs() < b.abs() { b.abs() } else { a.abs() };
-            }
-            let error = error * BOX_ERROR + f64::from(f32::MIN_POSITIVE);
-            min[axis] = ((least - error) as f32).next_down();
-            max[axis] = ((greatest + error) as f32).next_up();
+        for axis in 0..3 {
+            let row = [self.entry(axis, 0), self.entry(axis, 1), self.entry(axis, 2)];
+            let factors = absolute(row);
+            let middle = dot(row, center) + self.entry(axis, 3);
+            let error = dot(factors, largest) * BOX_ERROR + f64::from(f32::MIN_POSITIVE);
+            let reach = dot(factors, half) + error;
+            min[axis] = ((middle - reach) as f32).next_down();
+            max[axis] = ((middle + reach) as f32).next_up();
         }
         Aabb::new(min, max)
     }

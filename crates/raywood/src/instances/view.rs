@@ -21,7 +21,7 @@ const DOUBLE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Scaled numbers beyond this could overflow when they are multiplied.
 const LARGEST_FACTOR: f64 = 1e30;
 
-/// The relative error of a squared distance, and of keys on a stack, lengthens limits by this share.
+/// By so much limits are longer, for the relative errors of squared distances.
 const LENGTHENED: f64 = 1.0 + 16.0 * f32::EPSILON as f64;
 
 /// A region's view of an object: coordinates of the scene with their origin in the middle of the region, scaled by a power of two.
@@ -57,7 +57,7 @@ impl View {
             scale: 1.0,
             of_point: min == max,
         };
-        // Halves first: sums of the largest numbers overflow no double, but differences should be exact.
+        // Of a point exactly the point.
         let middle = [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
         let half = [0, 1, 2].map(|axis| 0.5 * max[axis] - 0.5 * min[axis]);
         let moved = [0, 1, 2].map(|axis| placed.rows[axis][3] - middle[axis]);

@@ -15,6 +15,9 @@ use crate::{Aabb, PreparedRay};
 /// What a lane of a node leads to: an even number is twice that of a node, an odd one one more than twice that of an entry.
 const END: u32 = u32::MAX;
 
+/// As many entries as a leaf of the binary tree has at most that a tree is made from.
+pub(crate) const MOST_IN_LEAF: usize = WIDTH;
+
 /// The most entries.
 pub(crate) const MAX_ENTRIES: usize = 1 << 30;
 
@@ -31,9 +34,9 @@ pub(crate) struct TopTree {
 }
 
 impl TopTree {
-    /// Made from a binary tree of one entry a leaf, whose nodes of largest area are opened until sixteen children are found, and from what
-    /// each primitive leads to. O(N).
-    pub(crate) fn of(tree: &Bvh2, entry: impl Fn(u32) -> u32) -> Self {
+    /// Made from a binary tree of one to sixteen entries a leaf, whose nodes of largest area are opened until sixteen children are found, and from what
+    /// each primitive leads to, with its box. A leaf of several becomes a node. O(N).
+    pub(crate) fn of(tree: &Bvh2, entry: impl Fn(u32) -> (u32, Aabb)) -> Self {
         let bounds = tree.bounds();
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         if tree.nodes().is_empty() {
@@ -190,10 +193,24 @@ struct Growth<'a, E> {
     nodes: Vec<WideNode>,
 }
 
-impl<E: Fn(u32) -> u32> Growth<'_, E> {
+impl<E: Fn(u32) -> (u32, Aabb)> Growth<'_, E> {
+    /// Adds the wide node of a leaf's entries.
+    fn add_leaf(&mut self, primitives: &[u32]) {
+        let mut node = WideNode::EMPTY;
+        for (lane, &primitive) in primitives.iter().enumerate() {
+            let (entry, bounds) = (self.entry)(primitive);
+            node.set_item(lane, &bounds, 2 * entry + 1);
+        }
+        self.nodes.push(node);
+    }
+
     /// Adds the wide node of a node of the binary tree and all below it; returns how many lie on the longest way down.
     fn add(&mut self, number: usize) -> usize {
         let nodes = self.tree.nodes();
+        if nodes[number].is_leaf() {
+            self.add_leaf(self.tree.leaf_primitives(&nodes[number]));
+            return 1;
+        }
         // Open the largest, again and again. As numbers of which the greatest is found by vectors: the bits of the area as a share of the whole but for the last four, in which the
         // lane stands. Leaves cannot be opened.
         let key = |number: usize, lane: usize| match nodes[number].is_leaf() {
@@ -223,8 +240,8 @@ impl<E: Fn(u32) -> u32> Growth<'_, E> {
         let mut deepest = 0;
         for (lane, &number) in children[..count].iter().enumerate() {
             let node = &nodes[number];
-            let item = if node.is_leaf() {
-                2 * (self.entry)(self.tree.leaf_primitives(node)[0]) + 1
+            let item = if node.is_leaf() && node.count() == 1 {
+                2 * (self.entry)(self.tree.leaf_primitives(node)[0]).0 + 1
             } else {
                 let below = self.nodes.len();
                 deepest = deepest.max(self.add(number));
