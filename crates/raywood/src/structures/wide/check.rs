@@ -96,8 +96,8 @@ fn cover(boxes: &[Aabb], [a, b, c]: [Vec3; 3]) -> bool {
     let own = Aabb::of_points([a, b, c]);
     (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| (i, j))).all(|(i, j)| {
         let (u, v) = (i as f32 / STEPS as f32, j as f32 / STEPS as f32);
-        // Rounding does not take it out of the triangle's own box.
-        let point = (a + u * (b - a) + v * (c - a)).max(own.min).min(own.max);
+        // Without differences, which may be infinite. Rounding does not take it out of the triangle's own box.
+        let point = ((1.0 - u - v) * a + u * b + v * c).max(own.min).min(own.max);
         boxes.iter().any(|bounds| bounds.contains(&Aabb { min: point, max: point }))
     })
 }
