@@ -19,7 +19,7 @@ struct Seen {
 
 /// What a ray sees of a vertex. It depends on these two alone, so that all triangles around a vertex have the same numbers for it.
 fn seen(ray: &PreparedRay, vertex: Vec3) -> Seen {
-    let [x, y, z] = ray.axes;
+    let [x, y, z] = ray.axes.numbers();
     let [dx, dy, dz] = [x, y, z].map(|axis| f64::from(ray.direction[axis]));
     let p = |axis: usize| f64::from(vertex[axis]) - f64::from(ray.origin[axis]);
     Seen { x: p(x) - dx / dz * p(z), y: p(y) - dy / dz * p(z), depth: p(z) }
@@ -59,7 +59,7 @@ pub(crate) fn cross_triangle(ray: &PreparedRay, corners: [Vec3; 3]) -> Option<Pr
     let [w, u, v] = [edge(c, b), edge(a, c), edge(b, a)];
     let sum = w + u + v;
     let depth = (w * a.depth + u * b.depth + v * c.depth) / sum;
-    let t = depth / f64::from(ray.direction[ray.axes[2]]);
+    let t = depth / f64::from(ray.direction[ray.axes.numbers()[2]]);
 
     let rounded = single_distance(t);
     let hit = PrimitiveHit { t: rounded, u: (u / sum) as f32, v: (v / sum) as f32 };

@@ -152,7 +152,7 @@ impl TriangleBlock {
             ];
             let least = a.smaller(b).smaller(c);
             let greatest = a.larger(b).larger(c);
-            let backwards = ray.entry_corners[axis] == 1;
+            let backwards = ray.entry_corner(axis) == 1;
             let reciprocal = simd.splat8(ray.reciprocal[axis]);
             near = (greatest.where_else(backwards, least) * reciprocal).larger(near);
             far = (least.where_else(backwards, greatest) * reciprocal).smaller(far);
@@ -167,9 +167,10 @@ impl TriangleBlock {
     #[inline(always)]
     pub(super) fn sheared<S: Simd>(&self, simd: S, ray: &PreparedRay, corner: usize) -> [S::F8; 3] {
         let corner = &self.corners[corner];
-        let x = simd.load8(&corner[ray.axes[0]]) - simd.splat8(ray.permuted_origin[0]);
-        let y = simd.load8(&corner[ray.axes[1]]) - simd.splat8(ray.permuted_origin[1]);
-        let z = simd.load8(&corner[ray.axes[2]]) - simd.splat8(ray.permuted_origin[2]);
+        let [x_axis, y_axis, z_axis] = ray.axes.numbers();
+        let x = simd.load8(&corner[x_axis]) - simd.splat8(ray.permuted_origin[0]);
+        let y = simd.load8(&corner[y_axis]) - simd.splat8(ray.permuted_origin[1]);
+        let z = simd.load8(&corner[z_axis]) - simd.splat8(ray.permuted_origin[2]);
         [x - simd.splat8(ray.shear[0]) * z, y - simd.splat8(ray.shear[1]) * z, z]
     }
 

@@ -78,7 +78,7 @@ fn larger_abs(largest: f32, x: f32) -> f32 {
 #[inline(always)]
 fn shear(ray: &PreparedRay, vertex: Vec3) -> [f32; 3] {
     let vertex = vertex.to_array();
-    let [x_axis, y_axis, z_axis] = ray.axes;
+    let [x_axis, y_axis, z_axis] = ray.axes.numbers();
     let [origin_x, origin_y, origin_z] = ray.permuted_origin;
     let x = vertex[x_axis] - origin_x;
     let y = vertex[y_axis] - origin_y;
@@ -93,7 +93,7 @@ fn shear(ray: &PreparedRay, vertex: Vec3) -> [f32; 3] {
 #[cold]
 #[inline(never)]
 fn intersect_in_double(ray: &PreparedRay, corners: [Vec3; 3]) -> Option<PrimitiveHit> {
-    let [x, y, z] = ray.axes;
+    let [x, y, z] = ray.axes.numbers();
     let [dx, dy, dz] = [x, y, z].map(|axis| f64::from(ray.direction[axis]));
     let [a, b, c] = corners.map(|corner| {
         let p = |axis: usize| f64::from(corner[axis]) - f64::from(ray.origin[axis]);

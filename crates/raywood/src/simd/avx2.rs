@@ -268,6 +268,21 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
+    fn permuted8(self, numbers: F8, from: &[u8; 8]) -> F8 {
+        // SAFETY: the token; eight bytes can be read.
+        unsafe {
+            let lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()));
+            F8(_mm256_permutevar8x32_ps(numbers.0, lanes))
+        }
+    }
+
+    #[inline(always)]
+    fn signs8(self, numbers: F8) -> u32 {
+        // SAFETY: the token.
+        unsafe { _mm256_movemask_ps(numbers.0) as u32 }
+    }
+
+    #[inline(always)]
     fn load_two(self, low: &[f32; 8], high: &[f32; 8]) -> F16 {
         F16([self.load8(low), self.load8(high)])
     }

@@ -41,6 +41,13 @@ pub(crate) fn as_rows(rays: &[Ray; 16]) -> &[[f32; 8]; 16] {
     unsafe { &*std::ptr::from_ref(rays).cast() }
 }
 
+/// A ray as a row of eight numbers.
+#[inline(always)]
+pub(crate) fn as_row(ray: &Ray) -> &[f32; 8] {
+    // SAFETY: as for sixteen of them.
+    unsafe { &*std::ptr::from_ref(ray).cast() }
+}
+
 /// Asks for the cache line of an item to be fetched soon; of one that is not there, for nothing.
 #[inline(always)]
 pub(crate) fn prefetch_item<T>(items: &[T], place: usize) {

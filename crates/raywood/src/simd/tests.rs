@@ -54,6 +54,8 @@ impl Kernel for Everything {
         bits(a.where_else(false, b).to_array(), &mut all);
         all.extend([a.less(b), a.less_or_equal(b), b.less(a)]);
         bits(a.replaced(0x5C, b).to_array(), &mut all);
+        bits(simd.permuted8(a, &[7, 0, 0, 5, 3, 6, 1, 2]).to_array(), &mut all);
+        all.push(simd.signs8(simd.splat8(1.0).replaced(0x96, b)) & 0x69 | simd.signs8(a) & 0x3F);
         let known = simd.splat8(0.0).larger(a).smaller(simd.splat8(1e6));
         bits([known.least(), known.greatest()], &mut all);
         bits(simd.splat8(self.0[3]).to_array(), &mut all);

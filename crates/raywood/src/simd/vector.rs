@@ -86,6 +86,20 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers from memory.
     fn load8(self, numbers: &[f32; 8]) -> Self::F8;
 
+    /// Eight numbers, each from the lane that is given for it, which is less than eight.
+    #[inline(always)]
+    fn permuted8(self, numbers: Self::F8, from: &[u8; 8]) -> Self::F8 {
+        let numbers = numbers.to_array();
+        self.load8(&from.map(|lane| numbers[usize::from(lane) % 8]))
+    }
+
+    /// The lanes of numbers with a sign, be they zero.
+    #[inline(always)]
+    fn signs8(self, numbers: Self::F8) -> u32 {
+        let signs = numbers.to_array().map(f32::is_sign_negative);
+        (0..8).fold(0, |set, lane| set | u32::from(signs[lane]) << lane)
+    }
+
     /// The whole numbers in numbers from 0 to 2^24, what is behind the point cut off.
     #[inline(always)]
     fn whole_numbers(self, numbers: Self::F16) -> [u32; 16] {

@@ -52,7 +52,7 @@ pub(crate) fn overlap<'a>(
     let min = |x: f32, acc: f32| if x < acc { x } else { acc };
     let (mut near, mut far) = (ray.t_min, t_max);
     for axis in 0..3 {
-        let entry_corner = ray.entry_corners[axis];
+        let entry_corner = ray.entry_corner(axis);
         let to_plane =
             |which: usize| (corner(which)[axis] - ray.origin[axis]) * ray.reciprocal[axis];
         near = max(to_plane(entry_corner), near);

@@ -109,7 +109,7 @@ pub(super) fn walk(
             count,
             crossed: if reciprocal.is_finite() { count } else { 0 },
             planes: lattice.planes(axis),
-            backwards: ray.entry_corners[axis] == 1,
+            backwards: ray.entry_corner(axis) == 1,
         }
     });
 

@@ -111,8 +111,8 @@ impl<'a> Walk<'a> {
                 let distance = position - self.ray.origin[axis];
                 let entry = (distance - self.margins.planes[axis]) * self.ray.reciprocal[axis];
                 let exit = (distance + self.margins.planes[axis]) * self.ray.reciprocal[axis];
-                let first = left + self.ray.entry_corners[axis] as u32;
-                let second = left + 1 - self.ray.entry_corners[axis] as u32;
+                let first = left + self.ray.entry_corner(axis) as u32;
+                let second = left + 1 - self.ray.entry_corner(axis) as u32;
                 if entry > far {
                     number = first;
                 } else if exit < near {

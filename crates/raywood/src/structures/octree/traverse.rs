@@ -42,7 +42,7 @@ pub(super) fn walk<P: Probe>(
     mut visit: impl FnMut(&mut P, &[u32]) -> Option<f32>,
 ) {
     let Some(&root) = tree.nodes.first() else { return };
-    let flip = ray.entry_corners[0] | ray.entry_corners[1] << 1 | ray.entry_corners[2] << 2;
+    let flip = ray.entry_corner(0) | ray.entry_corner(1) << 1 | ray.entry_corner(2) << 2;
     let margins = Margins::new(&tree.bounds, ray);
     let begin = -margins.limit(-ray.t_min);
     let mut end = margins.limit(ray.t_max);
@@ -143,7 +143,7 @@ struct Halves {
 #[inline(always)]
 fn halves(ray: &PreparedRay, margins: &Margins, cell: &Aabb, middle: Vec3, axis: usize) -> Halves {
     let (low, high) = (cell.min[axis], cell.max[axis]);
-    let (first, last) = if ray.entry_corners[axis] == 0 { (low, high) } else { (high, low) };
+    let (first, last) = if ray.entry_corner(axis) == 0 { (low, high) } else { (high, low) };
     let (margin, reciprocal) = (margins.planes[axis], ray.reciprocal[axis]);
     let first = first - ray.origin[axis];
     let middle = middle[axis] - ray.origin[axis];

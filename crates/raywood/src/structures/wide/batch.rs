@@ -12,7 +12,7 @@ use super::sink::Sink;
 use super::source::Source;
 use super::{WideBvh, packet};
 use crate::simd::{Kernel, PLACES, Simd, dispatch_on};
-use crate::{Geometry, Hit, Ray};
+use crate::{Geometry, Hit};
 
 /// How many rays are in flight: as many as hide the time that memory takes, and no more, for what belongs to them should stay in the nearest cache.
 pub(super) const RAYS: usize = PLACES;
@@ -44,7 +44,7 @@ impl<R: Source, H: Sink, const FAST: bool> Kernel for Closest<'_, R, H, FAST> {
             hits.set(number, None);
         }
         let finish = |number: usize, found: Found<Hit>| hits.set(number, found.hit);
-        let rest = valid(&rest, &rays);
+        let rest = rest.iter().map(|&number| (number, rays.ray(number)));
         let wave =
             Wave::<InSingle<FAST>, _, _, false> { tree, scene: geometry, rays: rest, finish };
         let spilled = dispatch_on(tree.level, wave);
@@ -87,20 +87,13 @@ impl<R: Source, const FAST: bool> Kernel for Any<'_, R, FAST> {
             occluded[number] = false;
         }
         let finish = |number: usize, found: Found<Hit>| occluded[number] = found.is_blocked;
-        let rest = valid(&rest, &rays);
+        let rest = rest.iter().map(|&number| (number, rays.ray(number)));
         let wave = Wave::<InSingle<FAST>, _, _, true> { tree, scene: geometry, rays: rest, finish };
         let spilled = dispatch_on(tree.level, wave);
         for number in spilled {
             occluded[number] = tree.any_hit(geometry, &rays.ray(number));
         }
     }
-}
-
-/// The valid ones of the rays of some numbers, with these.
-#[inline(always)]
-fn valid<R: Source>(numbers: &[usize], rays: &R) -> impl Iterator<Item = (usize, Ray)> {
-    let rays = numbers.iter().map(|&number| (number, rays.ray(number)));
-    rays.filter(|(_, ray)| ray.is_valid())
 }
 
 /// Where there is no ray in flight: neither a node nor a leaf, nor the end of a ray's way.
@@ -135,11 +128,12 @@ where
     fn run<S: Simd>(self, simd: S) -> Vec<usize> {
         let Self { tree, scene, rays: mut waiting, mut finish } = self;
         let most = waiting.size_hint().1.unwrap_or(RAYS);
-        let mut flights = Vec::with_capacity(RAYS.min(most));
+        let mut flights = Vec::<Flight<Q>>::with_capacity(RAYS.min(most));
         let mut currents = [IDLE; RAYS];
-        for (current, (number, ray)) in currents.iter_mut().zip(&mut waiting) {
+        for current in &mut currents {
+            let Some((number, ray)) = next_valid::<_, Q>(simd, &mut waiting) else { break };
             *current = tree.root.0;
-            flights.push(Flight::new(Q::new(scene, &ray), number, tree));
+            flights.push(Flight::new(Q::new(simd, scene, &ray), number, tree));
         }
         let flights = &mut flights[..];
         let mut spilled = Vec::new();
@@ -166,8 +160,8 @@ where
                 };
                 finish(flight.number, found);
                 currents[place] = IDLE;
-                if let Some((number, ray)) = waiting.next() {
-                    flight.begin(Q::new(scene, &ray), number, tree);
+                if let Some((number, ray)) = next_valid::<_, Q>(simd, &mut waiting) {
+                    flight.begin(Q::new(simd, scene, &ray), number, tree);
                     currents[place] = tree.root.0;
                 }
             }
@@ -218,6 +212,20 @@ where
                 let place = place as usize;
                 currents[place] = next(simd, tree, &mut flights[place]);
             }
+        }
+    }
+}
+
+/// The next ray that is valid, with its number.
+#[inline(always)]
+fn next_valid<S: Simd, Q: RaySearch>(
+    simd: S,
+    rays: &mut impl Iterator<Item = (usize, Q::Ray)>,
+) -> Option<(usize, Q::Ray)> {
+    loop {
+        let (number, ray) = rays.next()?;
+        if Q::is_valid(simd, &ray) {
+            return Some((number, ray));
         }
     }
 }

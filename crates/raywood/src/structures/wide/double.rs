@@ -67,10 +67,15 @@ impl RaySearch for InDouble {
     const IS_ROUNDED: bool = true;
 
     #[inline(always)]
-    fn new(scene: DoubleScene<'_>, ray: &Ray64) -> Self {
+    fn is_valid<S: Simd>(_: S, ray: &Ray64) -> bool {
+        ray.is_valid()
+    }
+
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, scene: DoubleScene<'_>, ray: &Ray64) -> Self {
         let local = scene.frame.ray(ray);
         Self {
-            single: PreparedRay::of_valid(&local.ray),
+            single: PreparedRay::of_valid(simd, &local.ray),
             local,
             exact: PreparedRay64::new(ray, scene.level),
             t_max: local.ray.t_max,
@@ -196,7 +201,7 @@ impl Kernel for Closest<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit64> {
         let Self { tree, scene, ray } = self;
-        let mut search = InDouble::new(scene, ray);
+        let mut search = InDouble::new(simd, scene, ray);
         single::closest(simd, tree, scene, &mut search, &mut ());
         search.hit(scene)
     }
@@ -215,7 +220,7 @@ impl Kernel for Any<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { tree, scene, ray } = self;
-        single::is_blocked(simd, tree, scene, &InDouble::new(scene, ray), &mut ())
+        single::is_blocked(simd, tree, scene, &InDouble::new(simd, scene, ray), &mut ())
     }
 }
 
@@ -282,7 +287,7 @@ impl Kernel for ClosestOfBatch<'_> {
             hits[number] = None;
         }
         let finish = |number: usize, found: Found<Hit64>| hits[number] = found.hit;
-        let rest = valid(&rest, rays);
+        let rest = rest.iter().map(|&number| (number, rays[number]));
         let wave = Wave::<InDouble, _, _, false> { tree, scene, rays: rest, finish };
         for number in dispatch_on(tree.level, wave) {
             hits[number] = tree.closest_in_double(scene, &rays[number]);
@@ -317,19 +322,12 @@ impl Kernel for AnyOfBatch<'_> {
             occluded[number] = false;
         }
         let finish = |number: usize, found: Found<Hit64>| occluded[number] = found.is_blocked;
-        let rest = valid(&rest, rays);
+        let rest = rest.iter().map(|&number| (number, rays[number]));
         let wave = Wave::<InDouble, _, _, true> { tree, scene, rays: rest, finish };
         for number in dispatch_on(tree.level, wave) {
             occluded[number] = tree.any_in_double(scene, &rays[number]);
         }
     }
-}
-
-/// The valid ones of the rays of some numbers, with these.
-#[inline(always)]
-fn valid(numbers: &[usize], rays: &[Ray64]) -> impl Iterator<Item = (usize, Ray64)> {
-    let rays = numbers.iter().map(|&number| (number, rays[number]));
-    rays.filter(|(_, ray)| ray.is_valid())
 }
 
 /// A geometry for kernels that ask one about what is no triangle: here everything is.

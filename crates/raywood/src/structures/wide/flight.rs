@@ -43,15 +43,15 @@ impl<Q: RaySearch> Flight<Q> {
     /// Another ray in the place of one that has ended.
     #[inline(always)]
     pub(super) fn begin(&mut self, search: Q, number: usize, tree: &WideBvh) {
-        let ray = search.single();
+        self.search = search;
+        let ray = self.search.single();
         self.slabs.replace(ray, tree.reach);
         if tree.parts.exist() {
             self.slabs = self.slabs.among_parts(tree.parts.margin(ray.origin));
         }
         if Q::IS_ROUNDED {
-            self.slabs = self.slabs.around(search.displacement());
+            self.slabs = self.slabs.around(self.search.displacement());
         }
-        self.search = search;
         self.number = number;
         self.top = 1;
     }

@@ -29,8 +29,11 @@ pub(super) trait RaySearch {
     /// Whether the ray and the tree are rounded from double precision.
     const IS_ROUNDED: bool;
 
+    /// Whether a ray is valid.
+    fn is_valid<S: Simd>(simd: S, ray: &Self::Ray) -> bool;
+
     /// A search that found nothing yet. The ray is valid.
-    fn new(scene: Self::Scene<'_>, ray: &Self::Ray) -> Self;
+    fn new<S: Simd>(simd: S, scene: Self::Scene<'_>, ray: &Self::Ray) -> Self;
 
     /// The ray in single precision.
     fn single(&self) -> &PreparedRay;
@@ -123,8 +126,13 @@ impl<const FAST: bool> RaySearch for InSingle<FAST> {
     const IS_ROUNDED: bool = false;
 
     #[inline(always)]
-    fn new(_: &dyn Geometry, ray: &Ray) -> Self {
-        let ray = PreparedRay::of_valid(ray);
+    fn is_valid<S: Simd>(simd: S, ray: &Ray) -> bool {
+        PreparedRay::is_valid(simd, ray)
+    }
+
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, _: &dyn Geometry, ray: &Ray) -> Self {
+        let ray = PreparedRay::of_valid(simd, ray);
         Self::of(ray, Nearest::new(&ray))
     }
 

@@ -21,7 +21,7 @@ impl<P: Probe, const FAST: bool> Kernel for Closest<'_, P, FAST> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, probe } = self;
-        let ray = PreparedRay::new(ray)?;
+        let ray = PreparedRay::with(simd, ray)?;
         let mut search = InSingle::<FAST>::of(ray, Nearest::new(&ray));
         closest(simd, tree, geometry, &mut search, probe);
         search.hit(geometry)
@@ -42,7 +42,7 @@ impl<const FAST: bool> Kernel for ClosestWithin<'_, FAST> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { tree, geometry, ray, limit } = self;
-        let ray = PreparedRay::new(ray)?;
+        let ray = PreparedRay::with(simd, ray)?;
         let mut search = InSingle::<FAST>::of(ray, Nearest::within(&ray, limit));
         closest(simd, tree, geometry, &mut search, &mut ());
         search.hit(geometry)
@@ -103,7 +103,7 @@ impl<P: Probe, const FAST: bool> Kernel for Any<'_, P, FAST> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { tree, geometry, ray, probe } = self;
-        let Some(ray) = PreparedRay::new(ray) else { return false };
+        let Some(ray) = PreparedRay::with(simd, ray) else { return false };
         let search = InSingle::<FAST>::of(ray, Nearest::new(&ray));
         is_blocked(simd, tree, geometry, &search, probe)
     }

@@ -7,7 +7,7 @@
 
 use super::node::WideNode;
 use crate::build::part_margin::DISTANCE_ERROR;
-use crate::geometry::TriangleBlock;
+use crate::geometry::{Side, Sides, TriangleBlock};
 use crate::minmax::larger;
 use crate::simd::{Float, Simd};
 use crate::{PreparedRay, Vec3};
@@ -24,14 +24,6 @@ const USUAL: f32 = (1u64 << 60) as f32;
 /// Products of sizes and reciprocals up to this are finite with all that is added to them.
 const FINITE: f32 = f32::MAX / 128.0;
 
-/// The side of a box on which a plane lies.
-#[derive(Clone, Copy, Debug)]
-#[repr(usize)]
-enum Side {
-    Smallest = 0,
-    Largest = 1,
-}
-
 /// A ray as the test of boxes needs it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slabs {
@@ -44,7 +36,7 @@ pub(super) struct Slabs {
     /// By how much of itself the far distance is lengthened.
     slack: f32,
     /// On which side the ray enters boxes.
-    sides: [Side; 3],
+    sides: Sides,
 }
 
 impl Slabs {
@@ -55,13 +47,13 @@ impl Slabs {
         exit: [f32::MIN; 3],
         t_min: f32::NAN,
         slack: SLACK,
-        sides: [Side::Smallest; 3],
+        sides: Sides([Side::Smallest; 3]),
     };
 
     /// Those of a ray among boxes that reach no further from zero than `reach` along any axis.
     #[inline(always)]
     pub(super) fn new(ray: &PreparedRay, reach: f32) -> Self {
-        let mut slabs = Self::with(ray.origin, ray.reciprocal, ray.t_min, [0.0; 3]);
+        let mut slabs = Self::with(ray, ray.reciprocal, [0.0; 3]);
         slabs.widen_if_unusual(ray, reach);
         slabs
     }
@@ -69,7 +61,7 @@ impl Slabs {
     /// Those of another ray, written in place: a copy would have to wait for them.
     #[inline(always)]
     pub(super) fn replace(&mut self, ray: &PreparedRay, reach: f32) {
-        *self = Self::with(ray.origin, ray.reciprocal, ray.t_min, [0.0; 3]);
+        *self = Self::with(ray, ray.reciprocal, [0.0; 3]);
         self.widen_if_unusual(ray, reach);
     }
 
@@ -78,12 +70,13 @@ impl Slabs {
         let steepest = largest(ray.reciprocal.abs());
         let farthest = largest(ray.origin.abs());
         if larger(larger(steepest, farthest), reach) > USUAL {
-            self.widen(ray.origin, ray.direction, ray.t_min, reach);
+            self.widen(ray, reach);
         }
     }
 
     #[inline(always)]
-    fn with(origin: Vec3, reciprocal: Vec3, t_min: f32, errors: [f32; 3]) -> Self {
+    fn with(ray: &PreparedRay, reciprocal: Vec3, errors: [f32; 3]) -> Self {
+        let origin = ray.origin;
         let (x, y, z) = (
             offsets(origin.x, reciprocal.x, errors[0]),
             offsets(origin.y, reciprocal.y, errors[1]),
@@ -93,27 +86,27 @@ impl Slabs {
             reciprocal: reciprocal.to_array(),
             entry: [x.0, y.0, z.0],
             exit: [x.1, y.1, z.1],
-            t_min,
+            t_min: ray.t_min,
             slack: SLACK,
-            sides: [side(reciprocal.x), side(reciprocal.y), side(reciprocal.z)],
+            sides: ray.entry_sides,
         }
     }
 
     /// Makes them right for a ray that hardly moves along an axis, or whose distances may overflow.
     #[cold]
     #[inline(never)]
-    fn widen(&mut self, origin: Vec3, direction: Vec3, t_min: f32, reach: f32) {
-        let reciprocal = direction.to_array().map(|d| 1.0 / d);
-        let size = origin.abs().max_element().max(reach);
+    fn widen(&mut self, ray: &PreparedRay, reach: f32) {
+        let reciprocal = ray.reciprocal.to_array();
+        let size = ray.origin.abs().max_element().max(reach);
         // No hit is further away than this, in either direction.
-        let farthest = 4.0 * size * reciprocal[direction.abs().max_axis()].abs();
+        let farthest = 4.0 * size * reciprocal[ray.direction.abs().max_axis()].abs();
         let usual = size <= USUAL && farthest <= USUAL;
 
         // Too steep: as steep as is usual, and around the slab in which the origin lies no distance is outside.
         let steep = |r: f32| r.abs() > USUAL;
         let bounded = reciprocal.map(|r| if steep(r) { USUAL.copysign(r) } else { r });
         let errors = reciprocal.map(|r| if steep(r) { 2.0 * farthest } else { 0.0 });
-        *self = Self::with(origin, bounded.into(), t_min, errors);
+        *self = Self::with(ray, bounded.into(), errors);
         for (axis, r) in reciprocal.into_iter().enumerate() {
             if !usual && (steep(r) || size * r.abs() > FINITE) {
                 // Nothing can be said along this axis: every box is met, but not the inverted one of a child that is not there.
@@ -153,7 +146,7 @@ impl Slabs {
             let b = simd.load8(block.coordinates(1, axis));
             let c = simd.load8(block.coordinates(2, axis));
             let (least, greatest) = (a.smaller(b).smaller(c), a.larger(b).larger(c));
-            let backwards = matches!(self.sides[axis], Side::Largest);
+            let backwards = matches!(self.sides.0[axis], Side::Largest);
             let entry = greatest.where_else(backwards, least);
             let exit = least.where_else(backwards, greatest);
             near = entry.mul_add(reciprocal, simd.splat8(self.entry[axis])).larger(near);
@@ -181,7 +174,7 @@ impl Slabs {
         for axis in 0..3 {
             let reciprocal = simd.splat16(self.reciprocal[axis]);
             let planes = &node.planes[axis];
-            let side = self.sides[axis] as usize;
+            let side = self.sides.0[axis] as usize;
             let entry = simd.load16(&planes[side]);
             let exit = simd.load16(&planes[side ^ 1]);
             // NaN, where products overflow, leaves the others to decide.
@@ -199,12 +192,6 @@ fn offsets(origin: f32, reciprocal: f32, error: f32) -> (f32, f32) {
     let product = -(origin * reciprocal);
     let error = product.abs() * PRODUCT_ERROR + f32::MIN_POSITIVE + error;
     (product - error, product + error)
-}
-
-/// On which side a ray enters boxes.
-#[inline(always)]
-fn side(reciprocal: f32) -> Side {
-    if reciprocal < 0.0 { Side::Largest } else { Side::Smallest }
 }
 
 /// The largest coordinate of a vector without NaN.
