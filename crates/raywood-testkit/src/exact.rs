@@ -156,6 +156,23 @@ impl ExactMesh {
                 Err(format!("missed triangle {number} at {t} with {ray:?}"))
             });
         };
+        self.check_place(ray, &hit)?;
+
+        // None may be nearer than rounding can tell.
+        let counting = hits.iter().filter(|(_, crossing)| crossing.is_within(ray, 0.0));
+        let closest = counting.map(|(_, crossing)| &crossing.t);
+        let closest = closest.reduce(|a, b| if b.is_less(a) { b } else { a });
+        // At an end of the interval the hit itself may be none in truth.
+        let Some(closest) = closest else { return Ok(()) };
+        let ahead = closest.minus(hit.t).value();
+        if ahead < -2.0 * TOLERANCE * hit.t.abs() {
+            return Err(format!("{hit:?} behind one at {} with {ray:?}", closest.value()));
+        }
+        Ok(())
+    }
+
+    /// Checks where a hit is said to be.
+    fn check_place(&self, ray: &Ray64, hit: &Hit64) -> Result<(), String> {
         let own = self.crossing(hit.primitive as usize, ray);
         let Some(own) = own else {
             return Err(format!("{hit:?} with a triangle that is not met by {ray:?}"));
@@ -172,18 +189,41 @@ impl ExactMesh {
         if !(ray.t_min <= hit.t && hit.t < ray.t_max) {
             return Err(format!("{hit:?} outside of the interval of {ray:?}"));
         }
-
-        // None may be nearer than rounding can tell.
-        let counting = hits.iter().filter(|(_, crossing)| crossing.is_within(ray, 0.0));
-        let closest = counting.map(|(_, crossing)| &crossing.t);
-        let closest = closest.reduce(|a, b| if b.is_less(a) { b } else { a });
-        // At an end of the interval the hit itself may be none in truth.
-        let Some(closest) = closest else { return Ok(()) };
-        let ahead = closest.minus(hit.t).value();
-        if ahead < -2.0 * TOLERANCE * hit.t.abs() {
-            return Err(format!("{hit:?} behind one at {} with {ray:?}", closest.value()));
-        }
         Ok(())
+    }
+
+    /// Checks an answer to a query for all hits; an error says what is wrong with it. Which of the triangles around an edge or a vertex are crossed there is not looked at.
+    pub fn check_all(&self, ray: &Ray64, answer: &[Hit64]) -> Result<(), String> {
+        for hit in answer {
+            self.check_place(ray, hit)?;
+        }
+        let order = |hit: &Hit64| (hit.t, hit.primitive);
+        if !answer.windows(2).all(|pair| order(&pair[0]) < order(&pair[1])) {
+            return Err(format!("not in order: {answer:?} with {ray:?}"));
+        }
+        let mut told: Vec<u32> = answer.iter().map(|hit| hit.primitive).collect();
+        told.sort_unstable();
+        if told.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(format!("the same twice: {answer:?} with {ray:?}"));
+        }
+        let hits = self.hits(ray);
+        let missed = hits.iter().find(|(number, crossing)| {
+            crossing.is_certain(ray) && told.binary_search(&(*number as u32)).is_err()
+        });
+        missed.map_or(Ok(()), |(number, crossing)| {
+            Err(format!("missed triangle {number} at {} with {ray:?}", crossing.t.value()))
+        })
+    }
+
+    /// Whether a ray comes from the side of a triangle that its normal points to; `None` where it runs along it.
+    pub fn meets_front(&self, primitive: u32, ray: &Ray64) -> Option<bool> {
+        let [a, b, c] = &self.corners[primitive as usize];
+        let rise = dot(&cross(&sub(b, a), &sub(c, a)), &point(ray.direction));
+        match rise.sign() {
+            Sign::Minus => Some(true),
+            Sign::NoSign => None,
+            Sign::Plus => Some(false),
+        }
     }
 
     /// Checks an answer to an any-hit query; an error says what is wrong with it.

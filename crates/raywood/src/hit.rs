@@ -30,3 +30,29 @@ impl Hit {
         (self.t - other.t).abs() <= Self::DISTANCE_TOLERANCE * greatest + f32::MIN_POSITIVE
     }
 }
+
+/// What hits of single and of double precision have in common: that they can be put in order.
+pub(crate) trait RayHit: Copy {
+    /// A distance along a ray.
+    type Distance: Copy + PartialOrd;
+
+    /// How far along the ray.
+    fn distance(&self) -> Self::Distance;
+
+    /// Which instance is hit, and which primitive.
+    fn numbers(&self) -> (u32, u32);
+}
+
+impl RayHit for Hit {
+    type Distance = f32;
+
+    #[inline(always)]
+    fn distance(&self) -> f32 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> (u32, u32) {
+        (self.instance, self.primitive)
+    }
+}

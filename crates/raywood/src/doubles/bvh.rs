@@ -30,8 +30,7 @@ use crate::{TriangleMesh, parallel};
 /// are as seen from there: where a triangle is smaller than a few millionths of the whole, so that single precision cannot tell it from its neighbours, rays ask all of these. Such a mesh should be
 /// cut into several.
 ///
-/// Closest and any hits, also in batches, and closest points are all there is so far: all hits, overlap, moving spheres, instances, refit and saving are for [`Bvh`](crate::Bvh)
-/// alone.
+/// Hits of all kinds and closest points are all there is so far: overlap, moving spheres, instances, refit and saving are for [`Bvh`](crate::Bvh) alone.
 #[derive(Clone, Debug)]
 pub struct Bvh64 {
     pub(super) mesh: TriangleMesh64,
@@ -134,7 +133,7 @@ impl Bvh64 {
         self.tree.validate::<TriangleMesh>(&self.frame.mesh(&self.mesh))
     }
 
-    fn scene(&self) -> DoubleScene<'_> {
+    pub(super) fn scene(&self) -> DoubleScene<'_> {
         DoubleScene { mesh: &self.mesh, frame: &self.frame, level: self.tree.level() }
     }
 }

@@ -1,5 +1,7 @@
 //! The answer to a closest-hit query in double precision.
 
+use crate::hit::RayHit;
+
 /// Where a ray first meets a [`TriangleMesh64`](crate::TriangleMesh64).
 ///
 /// `t` is off the exact distance by less than 1e-12 of itself, and `u` and `v` by less than 1e-12, whatever the triangle's coordinates and the ray's
@@ -15,4 +17,18 @@ pub struct Hit64 {
     pub v: f64,
     /// Which triangle; at exactly equal `t` the lowest number wins.
     pub primitive: u32,
+}
+
+impl RayHit for Hit64 {
+    type Distance = f64;
+
+    #[inline(always)]
+    fn distance(&self) -> f64 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> (u32, u32) {
+        (0, self.primitive)
+    }
 }

@@ -3,11 +3,14 @@
 //! The tree and its boxes are single precision, in a frame of the mesh's own ([`LocalFrame`]); what single precision cannot tell of a triangle is decided
 //! in double precision, and what that cannot tell in [`twofold`] numbers. `docs/numerics.md`, "Double precision", derives why nothing is lost.
 
+mod all_hits;
 mod bvh;
 mod closest_point;
+mod filtered;
 mod hit;
 mod local_frame;
 mod mesh;
+mod nearest_hits;
 mod ray;
 mod surface;
 mod triangle;

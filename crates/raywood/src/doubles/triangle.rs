@@ -3,7 +3,8 @@
 //! Plain double precision answers where its errors are certainly small enough, for the side of an edge as for a distance. What is left is computed from the
 //! original numbers with twice the digits, and signs of these exactly, so that triangles that share an edge agree about it.
 
-use super::twofold::{Twofold, cross, difference_of_products, dot, sign_of_difference};
+use super::twofold::{Twofold, cross, difference_of_products, dot};
+use super::twofold::{sign_between, sign_of_difference};
 use super::{Hit64, Ray64};
 use crate::double::Double3;
 use crate::{SimdLevel, Vectorized};
@@ -76,6 +77,18 @@ impl PreparedRay64 {
     /// alone.
     #[inline(always)]
     pub(crate) fn hit_distance(&self, corners: [Double3; 3], limit: f64) -> Option<f64> {
+        self.distance::<false>(corners, limit)
+    }
+
+    /// The same, but of the triangles around an edge or a vertex that the ray passes through one of those in front is hit and one of those behind, as by `cross_triangle` of single precision.
+    #[inline(always)]
+    pub(crate) fn crossing_distance(&self, corners: [Double3; 3], limit: f64) -> Option<f64> {
+        self.distance::<true>(corners, limit)
+    }
+
+    /// Where the ray hits a triangle; with `ONCE` as a [crossing](Self::crossing_distance).
+    #[inline(always)]
+    fn distance<const ONCE: bool>(&self, corners: [Double3; 3], limit: f64) -> Option<f64> {
         let seen = self.see(corners);
         let [e0, e1, e2] = seen.edges;
         let least = smaller(smaller(e0, e1), e2);
@@ -89,7 +102,7 @@ impl PreparedRay64 {
             return None;
         }
         let certain = least > seen.edge_error || greatest < -seen.edge_error;
-        if !(certain || self.level.run(Inside { ray: self, corners: &seen.corners })) {
+        if !(certain || self.level.run(Inside::<ONCE> { ray: self, corners: &seen.corners })) {
             return None;
         }
         let t = self.certain_distance(&seen, &crossed)?;
@@ -103,6 +116,15 @@ impl PreparedRay64 {
         let [p, q, r] = corners;
         let (u, v) = self.weights(t, [[p[x], p[y], p[z]], [q[x], q[y], q[z]], [r[x], r[y], r[z]]]);
         Hit64 { t, u, v, primitive }
+    }
+
+    /// Whether a ray that hits a triangle meets its front: the side that its normal `(p1-p0) x (p2-p0)` points to.
+    pub(crate) fn meets_front(&self, corners: [Double3; 3]) -> bool {
+        let [x, y, z] = self.axes;
+        let corners = corners.map(|p| [p[x], p[y], p[z]]);
+        let rise = self.level.run(Rise { ray: self, corners: &corners });
+        // Where the ray runs backwards along its last axis, the order of the axes mirrors space.
+        if self.direction[2] < 0.0 { rise > 0.0 } else { rise < 0.0 }
     }
 
     /// The hit with a triangle that the ray is known to hit within its interval; `None` of one that is seen edge-on after all.
@@ -236,20 +258,34 @@ impl PreparedRay64 {
     }
 }
 
-/// Whether the ray passes inside of a triangle or through its edges, by exact signs in a picture of twice the digits.
-struct Inside<'a> {
+/// Whether the ray passes inside of a triangle or through its edges, by exact signs in a picture of twice the digits; with `ONCE` where the ray, moved aside by next to nothing, passes inside.
+struct Inside<'a, const ONCE: bool> {
     ray: &'a PreparedRay64,
     corners: &'a [Double3; 3],
 }
 
-impl Vectorized for Inside<'_> {
+impl<const ONCE: bool> Vectorized for Inside<'_, ONCE> {
     type Output = bool;
 
     #[inline(always)]
     fn run(self) -> bool {
         let [a, b, c] = self.corners.each_ref().map(|p| self.ray.picture(p));
-        let side = |p: [Twofold; 2], q: [Twofold; 2]| sign_of_difference(p[0], q[1], p[1], q[0]);
+        let side = |p: [Twofold; 2], q: [Twofold; 2]| {
+            let sign = sign_of_difference(p[0], q[1], p[1], q[0]);
+            // The ray moved by `e` along x and `e^2` along y adds `e (p.y - q.y) + e^2 (q.x - p.x)`.
+            match sign {
+                0 if ONCE => match sign_between(p[1], q[1]) {
+                    0 => sign_between(q[0], p[0]),
+                    sign => sign,
+                },
+                sign => sign,
+            }
+        };
         let sides = [side(c, b), side(a, c), side(b, a)];
+        if ONCE {
+            // Still zero where two corners are seen as one.
+            return sides == [1; 3] || sides == [-1; 3];
+        }
         // All zero: it is seen edge-on, or has no area.
         let some = |sign: i32| sides.contains(&sign);
         some(1) != some(-1)
@@ -268,9 +304,7 @@ impl Vectorized for Distance<'_> {
     #[inline(always)]
     fn run(self) -> Option<f64> {
         let Self { ray, corners: [p0, p1, p2] } = self;
-        let between =
-            |p: &Double3, q: &Double3| [0, 1, 2].map(|axis| Twofold::difference(p[axis], q[axis]));
-        let normal = cross(between(p1, p0), between(p2, p0));
+        let normal = normal(self.corners);
         let height = dot(normal, between(p0, &ray.origin));
         let [dx, dy, dz] = ray.direction;
         let rise = normal[0] * dx + normal[1] * dy + normal[2] * dz;
@@ -292,6 +326,35 @@ impl Vectorized for Distance<'_> {
         let t = height.ratio(rise);
         Some(t.max(near - room(near)).min(far + room(far)))
     }
+}
+
+/// How fast a ray rises above a triangle's plane, times the normal's length: with twice the digits, so that its sign is right.
+struct Rise<'a> {
+    ray: &'a PreparedRay64,
+    corners: &'a [Double3; 3],
+}
+
+impl Vectorized for Rise<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let [dx, dy, dz] = self.ray.direction;
+        let normal = normal(self.corners);
+        (normal[0] * dx + normal[1] * dy + normal[2] * dz).high
+    }
+}
+
+/// The normal of a triangle, as long as twice its area.
+#[inline(always)]
+fn normal([p0, p1, p2]: &[Double3; 3]) -> [Twofold; 3] {
+    cross(between(p1, p0), between(p2, p0))
+}
+
+/// The difference of two points.
+#[inline(always)]
+fn between(p: &Double3, q: &Double3) -> [Twofold; 3] {
+    [0, 1, 2].map(|axis| Twofold::difference(p[axis], q[axis]))
 }
 
 /// The weights of the second and the third corner of a triangle that the ray meets, with twice the digits.

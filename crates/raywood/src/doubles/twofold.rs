@@ -157,6 +157,13 @@ pub(super) fn sign_of_difference(a: Twofold, b: Twofold, c: Twofold, d: Twofold)
     sum.sign()
 }
 
+/// The sign of `a - b`, exactly.
+#[inline(always)]
+pub(super) fn sign_between(a: Twofold, b: Twofold) -> i32 {
+    const ONE: Twofold = Twofold { high: 1.0, low: 0.0 };
+    sign_of_difference(a, ONE, b, ONE)
+}
+
 /// A sum of up to sixteen numbers as parts that do not overlap, the smallest first.
 #[derive(Default)]
 struct Expansion {

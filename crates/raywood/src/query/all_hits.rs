@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 use super::{HitFilter, HitLists, QueryOptions};
+use crate::hit::RayHit;
 use crate::structures::{Chooser, HitVisitor};
 use crate::{Bvh, Geometry, Hit, PreparedRay, Ray};
 
@@ -130,9 +131,9 @@ impl<G: Geometry> Bvh<G> {
 }
 
 /// The order of hits: by distance, of equally near ones by the number of the instance, then by that of the primitive.
-pub(crate) fn by_distance(a: &Hit, b: &Hit) -> Ordering {
-    let numbers = |hit: &Hit| (hit.instance, hit.primitive);
-    a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal).then(numbers(a).cmp(&numbers(b)))
+pub(crate) fn by_distance<H: RayHit>(a: &H, b: &H) -> Ordering {
+    let (s, t) = (a.distance(), b.distance());
+    s.partial_cmp(&t).unwrap_or(Ordering::Equal).then(a.numbers().cmp(&b.numbers()))
 }
 
 /// Tells a closure of every hit.

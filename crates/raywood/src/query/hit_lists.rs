@@ -1,6 +1,6 @@
 //! A list of hits for each of many rays.
 
-use crate::{Hit, Ray, parallel};
+use crate::{Hit, parallel};
 
 /// The hits of many rays in one array, those of each ray together, and where they begin: the layout of compressed sparse rows.
 ///
@@ -9,17 +9,20 @@ use crate::{Hit, Ray, parallel};
 /// | `hits`    | all hits | those of the first ray, then those of the second, ...              |
 /// | `offsets` | rays + 1 | where the hits of each ray begin; last, how many there are in all  |
 #[derive(Clone, Debug, PartialEq)]
-pub struct HitLists {
-    hits: Vec<Hit>,
+pub struct HitLists<H = Hit> {
+    hits: Vec<H>,
     offsets: Vec<usize>,
 }
 
 /// How many rays a task takes: always the same ones, and few enough that a few rays with many hits do not keep others waiting.
 const PIECE: usize = 512;
 
-impl HitLists {
+impl<H> HitLists<H> {
     /// Has `append` put the hits of each ray behind those that are there, rays being shared out among threads.
-    pub(crate) fn collect(rays: &[Ray], append: impl Fn(&Ray, &mut Vec<Hit>) + Sync) -> Self {
+    pub(crate) fn collect<R: Sync>(rays: &[R], append: impl Fn(&R, &mut Vec<H>) + Sync) -> Self
+    where
+        H: Send,
+    {
         let pieces = parallel::map_pieces(rays, PIECE, |rays| {
             let (mut hits, mut ends) = (Vec::new(), Vec::with_capacity(rays.len()));
             for ray in rays {
@@ -54,17 +57,17 @@ impl HitLists {
     /// # Panics
     ///
     /// If there is no ray of that number.
-    pub fn of(&self, ray: usize) -> &[Hit] {
+    pub fn of(&self, ray: usize) -> &[H] {
         &self.hits[self.offsets[ray]..self.offsets[ray + 1]]
     }
 
     /// The hits of each ray in turn.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[Hit]> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[H]> {
         (0..self.len()).map(|ray| self.of(ray))
     }
 
     /// The hits of all rays.
-    pub fn hits(&self) -> &[Hit] {
+    pub fn hits(&self) -> &[H] {
         &self.hits
     }
 
@@ -74,7 +77,7 @@ impl HitLists {
     }
 
     /// The arrays of hits and of offsets.
-    pub fn into_parts(self) -> (Vec<Hit>, Vec<usize>) {
+    pub fn into_parts(self) -> (Vec<H>, Vec<usize>) {
         (self.hits, self.offsets)
     }
 }

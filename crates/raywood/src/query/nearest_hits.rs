@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::all_hits::by_distance;
 use super::{HitFilter, HitLists, QueryOptions};
+use crate::hit::RayHit;
 use crate::structures::{Chooser, HitVisitor};
 use crate::{Bvh, Geometry, Hit, PreparedRay, Ray};
 
@@ -81,18 +82,23 @@ impl Chooser for All {
 }
 
 /// Keeps the nearest hits that count, as soon as there are `k` as a heap: the farthest of them comes first, and none is farther than the one at half its place.
-pub(crate) struct NearestHits<'a, C> {
+pub(crate) struct NearestHits<'a, H: RayHit, C> {
     /// Those of other rays, and behind them those of this one.
-    hits: &'a mut Vec<Hit>,
+    hits: &'a mut Vec<H>,
     start: usize,
     k: usize,
-    limit: f32,
+    limit: H::Distance,
     chooser: &'a mut C,
 }
 
-impl<'a, C> NearestHits<'a, C> {
+impl<'a, H: RayHit, C> NearestHits<'a, H, C> {
     /// None yet, behind those of other rays: of at most `k`, which is not zero, none of them beyond the limit.
-    pub(crate) fn behind(hits: &'a mut Vec<Hit>, k: usize, limit: f32, chooser: &'a mut C) -> Self {
+    pub(crate) fn behind(
+        hits: &'a mut Vec<H>,
+        k: usize,
+        limit: H::Distance,
+        chooser: &'a mut C,
+    ) -> Self {
         let start = hits.len();
         Self { hits, start, k, limit, chooser }
     }
@@ -103,16 +109,16 @@ impl<'a, C> NearestHits<'a, C> {
     }
 }
 
-impl<C: Chooser> HitVisitor for NearestHits<'_, C> {
+impl<H: RayHit, C: Chooser<H>> HitVisitor<H> for NearestHits<'_, H, C> {
     const LIMIT_SHRINKS: bool = true;
 
     #[inline(always)]
-    fn limit(&self) -> f32 {
+    fn limit(&self) -> H::Distance {
         self.limit
     }
 
     #[inline(always)]
-    fn visit(&mut self, hit: Hit) -> ControlFlow<()> {
+    fn visit(&mut self, hit: H) -> ControlFlow<()> {
         let kept = self.hits.len() - self.start;
         if kept < self.k {
             if self.chooser.counts(&hit) {
@@ -120,7 +126,7 @@ impl<C: Chooser> HitVisitor for NearestHits<'_, C> {
                 if kept + 1 == self.k {
                     let heap = &mut self.hits[self.start..];
                     (0..heap.len() / 2).rev().for_each(|place| sift_down(heap, place));
-                    self.limit = heap[0].t;
+                    self.limit = heap[0].distance();
                 }
             }
         } else {
@@ -128,7 +134,7 @@ impl<C: Chooser> HitVisitor for NearestHits<'_, C> {
             if by_distance(&hit, &heap[0]).is_lt() && self.chooser.counts(&hit) {
                 heap[0] = hit;
                 sift_down(heap, 0);
-                self.limit = heap[0].t;
+                self.limit = heap[0].distance();
             }
         }
         ControlFlow::Continue(())
@@ -136,7 +142,7 @@ impl<C: Chooser> HitVisitor for NearestHits<'_, C> {
 }
 
 /// Moves a hit to where none below it is farther.
-fn sift_down(heap: &mut [Hit], mut place: usize) {
+fn sift_down<H: RayHit>(heap: &mut [H], mut place: usize) {
     loop {
         let farther = |a: usize, b: usize| {
             let is_farther = heap.get(b).is_some_and(|b| by_distance(b, &heap[a]).is_gt());

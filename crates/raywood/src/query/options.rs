@@ -2,7 +2,7 @@
 
 use crate::geometry::meets_front;
 use crate::structures::Chooser;
-use crate::{Geometry, Hit, PreparedRay, Ray};
+use crate::{Geometry, Hit, Hit64, PreparedRay, Ray};
 
 /// A side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -13,15 +13,15 @@ pub enum Face {
     Back,
 }
 
-/// Says of each hit whether it counts. Every `FnMut(&Hit) -> bool` does.
-pub trait HitFilter {
+/// Says of each hit whether it counts. Every `FnMut(&Hit) -> bool` does, and for hits of double precision every `FnMut(&Hit64) -> bool`.
+pub trait HitFilter<H = Hit> {
     /// Whether the hit counts.
-    fn accepts(&mut self, hit: &Hit) -> bool;
+    fn accepts(&mut self, hit: &H) -> bool;
 }
 
-impl<F: FnMut(&Hit) -> bool> HitFilter for F {
+impl<H, F: FnMut(&H) -> bool> HitFilter<H> for F {
     #[inline(always)]
-    fn accepts(&mut self, hit: &Hit) -> bool {
+    fn accepts(&mut self, hit: &H) -> bool {
         self(hit)
     }
 }
@@ -30,9 +30,9 @@ impl<F: FnMut(&Hit) -> bool> HitFilter for F {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AcceptAll;
 
-impl HitFilter for AcceptAll {
+impl<H> HitFilter<H> for AcceptAll {
     #[inline(always)]
-    fn accepts(&mut self, _: &Hit) -> bool {
+    fn accepts(&mut self, _: &H) -> bool {
         true
     }
 }
@@ -115,6 +115,36 @@ impl<F> QueryOptions<F> {
     }
 }
 
+impl<F> QueryOptions<F> {
+    /// As [`filter`](Self::filter), of hits of [double precision](crate::Bvh64::intersect_with).
+    pub fn filter64<N: FnMut(&Hit64) -> bool>(self, filter: N) -> QueryOptions<N> {
+        let Self { cull, mask, skip, filter: _ } = self;
+        QueryOptions { cull, mask, skip, filter }
+    }
+
+    /// Whether the hit with a primitive, given by the numbers of its instance and its own, counts, but for the filter.
+    #[inline(always)]
+    pub(crate) fn lets_count(
+        &self,
+        numbers: (u32, u32),
+        mask: impl FnOnce() -> u32,
+        face: impl FnOnce() -> Face,
+    ) -> bool {
+        self.skip != Some(numbers)
+            && self.mask & mask() != 0
+            && self.cull.is_none_or(|culled| face() != culled)
+    }
+
+    /// Whether the filter lets a hit count.
+    #[inline(always)]
+    pub(crate) fn accepts<H>(&mut self, hit: &H) -> bool
+    where
+        F: HitFilter<H>,
+    {
+        self.filter.accepts(hit)
+    }
+}
+
 /// The part of [`QueryOptions`] that is asked where a hit is found: what [`Traceable`](crate::Traceable)s hand on to each other. The rest of them the scene asks itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -176,10 +206,9 @@ impl<G: Geometry, F: HitFilter> Chooser for OptionChooser<'_, G, F> {
     #[inline(always)]
     fn counts(&mut self, hit: &Hit) -> bool {
         let Self { options, geometry, ray } = self;
-        options.skip != Some((hit.instance, hit.primitive))
-            && options.mask & geometry.mask(hit.primitive) != 0
-            && options.cull.is_none_or(|culled| face(*geometry, ray, hit) != culled)
-            && options.filter.accepts(hit)
+        let numbers = (hit.instance, hit.primitive);
+        let mask = || geometry.mask(hit.primitive);
+        options.lets_count(numbers, mask, || face(*geometry, ray, hit)) && options.accepts(hit)
     }
 }
 

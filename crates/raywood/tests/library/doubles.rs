@@ -8,34 +8,34 @@ use raywood_testkit::exact::ExactMesh;
 use raywood_testkit::{Rng, closed, distance, nasty, rays, shapes};
 
 /// A number from -1 to 1 with all its digits.
-fn number(rng: &mut Rng) -> f64 {
+pub(crate) fn number(rng: &mut Rng) -> f64 {
     (rng.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-fn in_cube(rng: &mut Rng) -> [f64; 3] {
+pub(crate) fn in_cube(rng: &mut Rng) -> [f64; 3] {
     [number(rng), number(rng), number(rng)]
 }
 
-fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i] + b[i])
 }
 
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i] - b[i])
 }
 
-fn scaled(s: f64, a: [f64; 3]) -> [f64; 3] {
+pub(crate) fn scaled(s: f64, a: [f64; 3]) -> [f64; 3] {
     a.map(|x| s * x)
 }
 
-fn double(mesh: &TriangleMesh, at: [f64; 3], size: f64) -> TriangleMesh64 {
+pub(crate) fn double(mesh: &TriangleMesh, at: [f64; 3], size: f64) -> TriangleMesh64 {
     let place = |p: &raywood::Vec3| add(at, scaled(size, p.to_array().map(f64::from)));
     let positions = mesh.positions().iter().map(place).collect();
     TriangleMesh64::new(positions, mesh.triangles().to_vec()).expect("a mesh")
 }
 
 /// Places and sizes of things: at the origin, on the Earth in metres with features of millimetres, far out in space, tiny.
-const PLACES: [([f64; 3], f64); 6] = [
+pub(crate) const PLACES: [([f64; 3], f64); 6] = [
     ([0.0; 3], 1.0),
     ([1e7, -1e7, 1e7], 1e-3),
     ([4_510_023.25, 4_510_731.5, 114.125], 0.01),
@@ -45,7 +45,7 @@ const PLACES: [([f64; 3], f64); 6] = [
 ];
 
 /// A bumpy sphere of triangles of all shapes around a point, its vertices with all their digits.
-fn bumpy(subdivisions: u32, at: [f64; 3], size: f64, rng: &mut Rng) -> TriangleMesh64 {
+pub(crate) fn bumpy(subdivisions: u32, at: [f64; 3], size: f64, rng: &mut Rng) -> TriangleMesh64 {
     let sphere = closed::icosphere(subdivisions, raywood::Vec3::ZERO, 1.0);
     let bump = |p: &raywood::Vec3| {
         let p = p.to_array().map(f64::from);
@@ -56,7 +56,7 @@ fn bumpy(subdivisions: u32, at: [f64; 3], size: f64, rng: &mut Rng) -> TriangleM
 }
 
 /// Rays into and out of something that lies there: from inside, near and far; at random, at vertices and edges.
-fn rays_at(
+pub(crate) fn rays_at(
     mesh: &TriangleMesh64,
     at: [f64; 3],
     size: f64,

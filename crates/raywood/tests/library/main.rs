@@ -6,6 +6,7 @@ mod bounding_balls;
 mod build_and_query;
 mod closest_point;
 mod conformance;
+mod double_hits;
 mod doubles;
 mod dynamic;
 mod forest;

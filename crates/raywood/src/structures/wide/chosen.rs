@@ -12,9 +12,9 @@ use crate::traverse::slab::inside_own_bounds;
 use crate::{Geometry, Hit, PreparedRay};
 
 /// Who says which hits count.
-pub(crate) trait Chooser {
+pub(crate) trait Chooser<H = Hit> {
     /// Whether a hit counts. Asked only of hits that would be an answer.
-    fn counts(&mut self, hit: &Hit) -> bool;
+    fn counts(&mut self, hit: &H) -> bool;
 }
 
 /// Looks for the closest hit that counts; with `ANY`, for any.

@@ -8,20 +8,21 @@ use super::parts::Told;
 use super::single::SmallStack;
 use super::step::{lanes, others};
 use crate::geometry::{BlockHits, TriangleBlock, cross_triangle};
+use crate::hit::RayHit;
 use crate::simd::{Float, Kernel, Simd};
 use crate::traverse::slab::inside_own_bounds;
 use crate::{Geometry, Hit, PreparedRay, PrimitiveHit};
 
-/// Who is told of hits.
-pub(crate) trait HitVisitor {
+/// Who is told of hits, of single precision or double.
+pub(crate) trait HitVisitor<H: RayHit = Hit> {
     /// Whether the limit shrinks as hits are found, so that it pays to visit what is near first.
     const LIMIT_SHRINKS: bool;
 
     /// The distance beyond which hits are of no use; what lies exactly there may still be.
-    fn limit(&self) -> f32;
+    fn limit(&self) -> H::Distance;
 
     /// Takes a hit, perhaps one beyond the limit, and says whether to go on.
-    fn visit(&mut self, hit: Hit) -> ControlFlow<()>;
+    fn visit(&mut self, hit: H) -> ControlFlow<()>;
 }
 
 /// Tells a visitor of every hit within the ray's interval and up to the visitor's limit, in any order.

@@ -11,6 +11,7 @@ mod crossings;
 mod crown;
 mod division;
 mod double;
+mod double_hits;
 mod entries;
 mod flight;
 mod gathered;
