@@ -1,5 +1,6 @@
 //! Scenes saved with the tree over their surfaces: a [saved tree](raywood::SavedTree) with sections for what a scene has besides.
 
+mod checksums;
 mod environment;
 mod images;
 mod scene;
