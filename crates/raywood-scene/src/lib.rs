@@ -3,6 +3,7 @@
 mod axes;
 pub mod builtin;
 mod camera;
+mod camera_path;
 mod color;
 mod environment;
 mod error;
