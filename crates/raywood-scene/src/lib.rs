@@ -7,6 +7,7 @@ mod camera_path;
 mod color;
 mod environment;
 mod error;
+mod files_read;
 mod flatten;
 pub mod formats;
 mod framing;
@@ -33,6 +34,7 @@ pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
 pub use environment::{Environment, Sky, SkyError, load_environment};
 pub use error::{LoadError, Place};
+pub use files_read::{FileStamp, files_read};
 pub use flatten::TooManyTriangles;
 pub use framing::{
     Framing, ambient, default_camera, default_direction, default_lights, frame_bounds,

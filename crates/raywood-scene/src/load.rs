@@ -7,6 +7,7 @@ use std::path::Path;
 use raywood::TriangleMesh;
 
 use crate::error::{LoadError, Place};
+use crate::files_read;
 use crate::formats::{FORMATS, Format, Input, Nesting};
 use crate::{Material, Scene};
 
@@ -83,6 +84,7 @@ pub(crate) fn load_nested(
 
 /// The bytes of a regular file. Anything else (a directory, a pipe, a device) might never end, and is refused.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+    files_read::note(path);
     let refuse = |message: &str| Err(LoadError::new(path, Place::File, message));
     let metadata = fs::metadata(path).map_err(|error| LoadError::io(path, error))?;
     if metadata.is_dir() {
