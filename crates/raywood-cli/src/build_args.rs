@@ -35,7 +35,8 @@ impl BuildArgs {
         BuildOptions { memory_limit: self.memory_limit, ..self.preset().options() }
     }
 
-    fn preset(&self) -> BuildPreset {
+    /// How structures are built.
+    pub(crate) fn preset(&self) -> BuildPreset {
         self.preset.unwrap_or_default()
     }
 

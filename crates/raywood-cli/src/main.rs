@@ -1,9 +1,11 @@
 //! The command `raywood`: a model file in, a ray-traced picture out.
 
 mod build_args;
+mod checkpoint;
 mod commands;
 mod exporters;
 mod failure;
+mod image_args;
 mod interrupt;
 mod mapped_file;
 mod output_file;
@@ -14,6 +16,7 @@ mod progress_bar;
 mod query;
 mod report;
 mod scene_source;
+mod settings;
 mod simd_args;
 mod surroundings;
 mod view_args;
@@ -24,9 +27,7 @@ use clap::Parser;
 
 /// What follows the list of options.
 const AFTER_HELP: &str = "\
-Try:
-  raywood render
-  raywood render model.glb -o picture.png
+Try: raywood render, raywood render model.glb -o picture.png
 
 Exit codes: 0 done, 1 failed while running, 2 usage or bad input, 130 Ctrl-C";
 

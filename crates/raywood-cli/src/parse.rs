@@ -4,7 +4,9 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
-use raywood_render::{Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, TONE_MAPS, ToneMap};
+use raywood_render::{
+    Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, Region, TONE_MAPS, ToneMap,
+};
 use raywood_scene::closest_name;
 
 /// A point or direction, `X,Y,Z`.
@@ -69,6 +71,40 @@ impl FromStr for Size {
         match (width.trim().parse(), height.trim().parse()) {
             (Ok(width), Ok(height)) => Ok(Self { width, height }),
             _ => Err(complaint()),
+        }
+    }
+}
+
+/// A rectangle of pixels, `X,Y,WIDTH,HEIGHT`.
+pub(crate) fn region(text: &str) -> Result<Region, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => {
+            Ok(Region { x, y, width, height })
+        }
+        _ => {
+            Err("expected column, row, width and height in pixels, as in 640,0,320,200".to_owned())
+        }
+    }
+}
+
+/// One of several shares, `NUMBER/COUNT`, the first of which is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Share {
+    pub(crate) number: u32,
+    pub(crate) count: u32,
+}
+
+impl FromStr for Share {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(number, count)| {
+            Some((number.trim().parse().ok()?, count.trim().parse().ok()?))
+        });
+        match parts {
+            Some((number, count)) if (1..=count).contains(&number) => Ok(Self { number, count }),
+            _ => Err("expected a number and how many there are, from 1/1 on, as in 3/8".to_owned()),
         }
     }
 }
@@ -260,6 +296,15 @@ mod tests {
         assert_eq!("640x400".parse(), Ok(Size { width: 640, height: 400 }));
         for bad in ["640", "x", "640x", "-1x2", "1.5x2", "640x400x3", "99999999999x1"] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+        let corner = Region { x: 640, y: 0, width: 320, height: 200 };
+        assert_eq!(region("640,0, 320,200"), Ok(corner));
+        for bad in ["", "1,2,3", "1,2,3,4,5", "-1,0,2,2", "0,0,0,1", "0,0,1.5,1"] {
+            assert!(region(bad).is_err(), "{bad}");
+        }
+        assert_eq!("3/8".parse(), Ok(Share { number: 3, count: 8 }));
+        for bad in ["", "3", "0/8", "9/8", "1/0", "-1/2", "a/b", "1/2/3"] {
+            assert!(bad.parse::<Share>().is_err(), "{bad}");
         }
         assert_eq!(
             "1,2,3,0.5".parse(),

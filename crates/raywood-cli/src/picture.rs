@@ -7,11 +7,13 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 use raywood_render::{
     Aov, BoundsOverlay, Contents, Ended, Features, Film, Goal, HeatMap, HeatQuantity, Image,
-    ImageFormat, Layer, LayerSources, PreparedScene, Progress, RayCounts, RenderError,
-    RenderOptions, RenderStats, RgbImage, ToneMap, View, WriteOptions, bounds_overlay, denoise,
-    exposure_for, features, heat_map, key_exposure, noise, primitive_ids, render, render_passes,
+    ImageFormat, Keeper, Layer, LayerSources, Part, PreparedScene, Progress, RayCounts,
+    RenderError, RenderOptions, RenderStats, RgbImage, Shot, ToneMap, View, WriteOptions,
+    bounds_overlay, denoise, exposure_for, features, heat_map, key_exposure, noise, primitive_ids,
+    render, render_passes,
 };
 
+use crate::checkpoint::Checkpoint;
 use crate::failure::Failure;
 use crate::interrupt::AskOnInterrupt;
 use crate::parse::Exposure;
@@ -41,6 +43,10 @@ pub(crate) struct Request<'a> {
     pub(crate) aovs: &'a [Aov],
     /// Whether noise is removed.
     pub(crate) denoise: bool,
+    /// Which pixels are rendered.
+    pub(crate) part: Part,
+    /// Where what there is is kept.
+    pub(crate) checkpoint: Option<&'a Checkpoint>,
 }
 
 /// A picture, and what a report says of it.
@@ -52,6 +58,8 @@ pub(crate) struct Drawn {
     /// How much of the light is shown.
     pub(crate) exposure: f32,
     pub(crate) passes: Option<Passes>,
+    /// Whether the film was kept, if that was asked for: there is a picture all the same.
+    pub(crate) kept: Result<(), Failure>,
 }
 
 /// What a report says of a picture in passes.
@@ -102,26 +110,22 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
         picture
     };
 
-    let &Request { prepared, view: View { camera, lights }, options, .. } = request;
+    let &Request { prepared, view: View { camera, .. }, options, .. } = request;
     let Some(quantity) = request.heatmap else {
-        let Light { image, layers, stats, passes } = light(request, pool)?;
+        let Light { image, layers, stats, passes, usual_exposure, kept } = light(request, pool)?;
         let exposure = match request.exposure {
-            _ if request.keeps_light || image.are_numbers() => 1.0,
-            Some(Exposure::Factor(factor)) => factor,
-            Some(Exposure::Auto) => key_exposure(&image),
-            None if options.integrator.name == "path" => {
-                let expose =
-                    |progress: &_| exposure_for(prepared, camera, lights, options, progress);
-                traced(pool, expose)?
-            }
-            None => 1.0,
+            _ if request.keeps_light => 1.0,
+            exposure => exposure_of(&image, exposure, || match usual_exposure {
+                Some(exposure) => Ok(exposure),
+                None => find_exposure(prepared, request.view, options, pool),
+            })?,
         };
         let image = image.exposed(exposure).with_tone_map(request.tone_map);
         let picture = match &overlay {
             None => Picture::Light(image, layers),
             Some(_) => Picture::Drawn(draw_over(image.to_rgb_image())),
         };
-        return Ok(Drawn { picture, render: stats, heat: None, bounds, exposure, passes });
+        return Ok(Drawn { picture, render: stats, heat: None, bounds, exposure, passes, kept });
     };
 
     let started = Instant::now();
@@ -133,34 +137,112 @@ pub(crate) fn draw(request: &Request<'_>, pool: &ThreadPool) -> Result<Drawn, Fa
     let picture = map.with_legend(&draw_over(map.picture(scale)), scale);
     let heat = Heat::of(&map, scale);
     let picture = Picture::Drawn(picture);
-    Ok(Drawn { picture, render: stats, heat: Some(heat), bounds, exposure: 1.0, passes: None })
+    Ok(Drawn {
+        picture,
+        render: stats,
+        heat: Some(heat),
+        bounds,
+        exposure: 1.0,
+        passes: None,
+        kept: Ok(()),
+    })
 }
 
-/// The light of a picture: in passes where that is slow or nobody knows how many there will be, and Ctrl-C leaves what there is; else at once.
+/// How much of the light of an image is shown; `usual` is that if nobody says.
+pub(crate) fn exposure_of(
+    image: &Image,
+    asked: Option<Exposure>,
+    usual: impl FnOnce() -> Result<f32, Failure>,
+) -> Result<f32, Failure> {
+    match asked {
+        _ if image.are_numbers() => Ok(1.0),
+        Some(Exposure::Factor(factor)) => Ok(factor),
+        Some(Exposure::Auto) => Ok(key_exposure(image)),
+        None => usual(),
+    }
+}
+
+/// How much of the light is shown if nobody says: of a path tracer's picture as much as it has room for.
+pub(crate) fn find_exposure(
+    prepared: &PreparedScene<'_>,
+    View { camera, lights }: &View,
+    options: &RenderOptions,
+    pool: &ThreadPool,
+) -> Result<f32, Failure> {
+    if options.integrator.name != "path" {
+        return Ok(1.0);
+    }
+    traced(pool, |progress| exposure_for(prepared, camera, lights, options, progress))
+}
+
+/// Whether a picture's samples come a few at a time: where they are slow, or nobody knows how many there will be or how noisy they are.
+pub(crate) fn is_in_passes(options: &RenderOptions, goal: &Goal, aovs: &[Aov]) -> bool {
+    let is_open = goal.is_open() || aovs.iter().any(|aov| aov.is_of_film());
+    is_open || options.integrator.name == "path"
+}
+
+/// The light of a picture: on a film where it comes in passes or parts or is kept, and Ctrl-C leaves what there is; else at once, which gives the same as a film of one pass.
 fn light(request: &Request<'_>, pool: &ThreadPool) -> Result<Light, Failure> {
     let &Request { prepared, view: View { camera, lights }, options, goal, aovs, .. } = request;
-    let is_in_passes = options.integrator.name == "path"
-        || goal.is_open()
-        || aovs.iter().any(|aov| aov.is_of_film());
-    if !is_in_passes {
+    let &Request { part, checkpoint, .. } = request;
+    let in_one_pass = !is_in_passes(options, &goal, aovs);
+    if in_one_pass && part == Part::Whole && checkpoint.is_none() {
         let draw = |progress: &_| render(prepared, camera, lights, options, progress);
         let (image, stats) = traced(pool, draw)?;
         let layers = beside(request, None, pool)?.1;
-        return Ok(Light { image, layers, stats, passes: None });
+        return Ok(Light {
+            image,
+            layers,
+            stats,
+            passes: None,
+            usual_exposure: None,
+            kept: Ok(()),
+        });
     }
 
+    // Who has the film alone later should know how it is shown.
+    let usual_exposure =
+        checkpoint.map(|_| find_exposure(prepared, request.view, options, pool)).transpose()?;
     let progress = Arc::new(Progress::new());
     let asked = Arc::clone(&progress);
     let guard = AskOnInterrupt::new(move || asked.cancel());
-    let mut film = Film::new(options.width, options.height).map_err(failure)?;
-    let (stats, ended) = during_passes(&progress, || {
-        let film = &mut film;
-        pool.install(|| render_passes(prepared, camera, lights, options, &goal, film, &progress))
-    })
-    .map_err(failure)?;
+    let mut film = match checkpoint.and_then(Checkpoint::take_film) {
+        Some(film) => film,
+        None => Film::new(options.width, options.height).map_err(failure)?,
+    };
+    let shot = Shot { scene: prepared, camera, lights, options, part };
+    let goal = Goal { in_one_pass, ..goal };
+    let result = {
+        let exposure = usual_exposure.unwrap_or(1.0);
+        let mut keep =
+            |film: &Film| checkpoint.map_or(Duration::MAX, |file| file.keep(film, exposure));
+        let keeper = checkpoint.map(|file| Keeper { every: file.every, keep: &mut keep });
+        let (film, progress) = (&mut film, &*progress);
+        let passes = || pool.install(|| render_passes(&shot, &goal, film, progress, keeper));
+        match in_one_pass {
+            true => during_rendering(progress, passes),
+            false => during_passes(progress, passes),
+        }
+    };
     drop(guard);
-    let noise = noise(&film);
-    let (features, layers) = beside(request, Some(&film), pool)?;
+    let mut kept = Ok(());
+    if let (Some(file), Some(exposure)) = (checkpoint, usual_exposure) {
+        if matches!(result, Ok(_) | Err(RenderError::Cancelled)) {
+            let is_finished = result.as_ref().is_ok_and(|(_, ended)| *ended != Ended::Cancelled);
+            kept = file.save(&film, exposure, is_finished);
+        }
+        if let Err(RenderError::Cancelled) = result {
+            kept?;
+            let name = file.path().display();
+            return Err(Failure::Interrupted(format!(
+                "before there was a picture; {name} has what was done, --resume goes on"
+            )));
+        }
+    }
+    let (stats, ended) = result.map_err(failure)?;
+
+    let noise = noise(&film, &part);
+    let (features, mut layers) = beside(request, Some(&film), pool)?;
     let denoised = features
         .filter(|_| request.denoise)
         .and_then(|features| pool.install(|| denoise(&film, &features)));
@@ -168,14 +250,18 @@ fn light(request: &Request<'_>, pool: &ThreadPool) -> Result<Light, Failure> {
         print::warning("too few passes to know the noise, none is removed");
     }
     let passes = Passes {
-        samples: film.samples(),
-        mean_samples: film.mean_samples(),
+        samples: film.samples_in(&part),
+        mean_samples: film.mean_samples_in(&part),
         noise: noise.is_finite().then_some(noise),
         is_denoised: denoised.is_some(),
         ended,
     };
+    if let Part::Region(region) = part {
+        layers = layers.iter().map(|layer| layer.cropped(film.width(), region)).collect();
+        film = film.cropped(region);
+    }
     let image = denoised.unwrap_or_else(|| film.image(options.integrator.shows_light));
-    Ok(Light { image, layers, stats, passes: Some(passes) })
+    Ok(Light { image, layers, stats, passes: Some(passes), usual_exposure, kept })
 }
 
 /// What was computed.
@@ -184,6 +270,10 @@ struct Light {
     layers: Vec<Layer>,
     stats: RenderStats,
     passes: Option<Passes>,
+    /// How much of it is shown if nobody says, where that was found already.
+    usual_exposure: Option<f32>,
+    /// Whether the film was kept, if that was asked for.
+    kept: Result<(), Failure>,
 }
 
 /// What is wanted beside the light: features if noise is to be removed, and layers. From the rays that all pixels of the picture have.
@@ -193,7 +283,7 @@ fn beside(
     pool: &ThreadPool,
 ) -> Result<(Option<Features>, Vec<Layer>), Failure> {
     let &Request { prepared, view: View { camera, .. }, options, aovs, .. } = request;
-    let samples = film.map_or(options.samples, |film| film.samples().0);
+    let samples = film.map_or(options.samples, |film| film.samples_in(&request.part).0);
     let needs_features = request.denoise || aovs.iter().any(|aov| aov.is_feature());
     let find = |progress: &_| features(prepared, camera, options, samples, progress);
     let found = needs_features.then(|| traced(pool, find)).transpose()?;
@@ -257,11 +347,16 @@ impl Drawn {
     pub(crate) fn samples(&self, asked: u32) -> String {
         match &self.passes {
             None => asked.to_string(),
-            Some(Passes { samples: (fewest, most), .. }) if fewest == most => most.to_string(),
-            Some(Passes { samples: (fewest, most), mean_samples, .. }) => {
-                format!("{fewest} to {most} (on average {mean_samples:.1})")
-            }
+            Some(Passes { samples, mean_samples, .. }) => samples_in_words(*samples, *mean_samples),
         }
+    }
+}
+
+/// The fewest and the most samples of a pixel and their mean, in words.
+pub(crate) fn samples_in_words((fewest, most): (u32, u32), mean: f64) -> String {
+    match fewest == most {
+        true => most.to_string(),
+        false => format!("{fewest} to {most} (on average {mean:.1})"),
     }
 }
 

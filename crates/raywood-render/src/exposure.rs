@@ -14,6 +14,22 @@ const BRIGHT: f32 = 0.8;
 /// The share of pixels that may be brighter.
 const MAY_BE_BRIGHTER: f32 = 0.1;
 
+/// A small picture of the same scene by the same method: what can be known of a picture's light before, or without, all of its pixels. The same for any number of threads.
+pub(crate) fn preview(
+    scene: &PreparedScene<'_>,
+    camera: &Camera,
+    lights: &[Light],
+    options: &RenderOptions,
+    progress: &Progress,
+) -> Result<Image, RenderError> {
+    const WIDTH: u32 = 64;
+    options.validate()?;
+    let height = u64::from(WIDTH) * u64::from(options.height) / u64::from(options.width);
+    let height = height.clamp(1, u64::from(4 * WIDTH)) as u32;
+    let small = RenderOptions { width: WIDTH, height, samples: 4, ..options.clone() };
+    render(scene, camera, lights, &small, progress).map(|(image, _)| image)
+}
+
 /// The factor, at most 1, with which nine tenths of the pixels stay below where bright light is compressed: found from a small picture of the same scene, which is the same for
 /// any number of threads.
 ///
@@ -27,12 +43,7 @@ pub fn exposure_for(
     options: &RenderOptions,
     progress: &Progress,
 ) -> Result<f32, RenderError> {
-    const WIDTH: u32 = 64;
-    options.validate()?;
-    let height = u64::from(WIDTH) * u64::from(options.height) / u64::from(options.width);
-    let height = height.clamp(1, u64::from(4 * WIDTH)) as u32;
-    let small = RenderOptions { width: WIDTH, height, samples: 4, ..options.clone() };
-    let (image, _) = render(scene, camera, lights, &small, progress)?;
+    let image = preview(scene, camera, lights, options, progress)?;
     let mut brightness: Vec<f32> = image.pixels().iter().map(|&pixel| luminance(pixel)).collect();
     brightness.sort_unstable_by(f32::total_cmp);
     let place = ((1.0 - MAY_BE_BRIGHTER) * brightness.len() as f32) as usize;

@@ -4,6 +4,8 @@ use raywood_scene::{Rgb, luminance};
 
 use crate::image::Image;
 use crate::options::RenderError;
+use crate::part::{Part, Region};
+use crate::tiles::{Tile, tiles_in_morton_order};
 
 /// For each pixel the sum of its samples, their number, and how much the passes differ. Two films of the same picture with different samples
 /// can be [merged](Self::merge).
@@ -111,14 +113,25 @@ impl Film {
 
     /// The fewest and the most samples of a pixel; zeros without pixels.
     pub fn samples(&self) -> (u32, u32) {
-        let samples = self.pixels.iter().map(|pixel| pixel.samples);
+        self.samples_in(&Part::Whole)
+    }
+
+    /// The fewest and the most samples of a pixel of a part.
+    pub fn samples_in(&self, part: &Part) -> (u32, u32) {
+        let samples = part.pixels(self).map(|pixel| pixel.samples);
         (samples.clone().min().unwrap_or(0), samples.max().unwrap_or(0))
     }
 
     /// The mean number of samples of a pixel; 0 without pixels.
     pub fn mean_samples(&self) -> f64 {
-        let sum: u64 = self.pixels.iter().map(|pixel| u64::from(pixel.samples)).sum();
-        sum as f64 / self.pixels.len().max(1) as f64
+        self.mean_samples_in(&Part::Whole)
+    }
+
+    /// The mean number of samples of a pixel of a part.
+    pub fn mean_samples_in(&self, part: &Part) -> f64 {
+        let samples = part.pixels(self).map(|pixel| u64::from(pixel.samples));
+        let (count, sum) = samples.fold((0u64, 0), |(count, sum), one| (count + 1, sum + one));
+        sum as f64 / count.max(1) as f64
     }
 
     /// Adds what another film of the same picture found.
@@ -133,6 +146,28 @@ impl Film {
         }
     }
 
+    /// Takes from another film of the same picture, with the same samples, the tiles of which it has more.
+    ///
+    /// # Panics
+    ///
+    /// If the sizes differ.
+    pub fn unite(&mut self, other: &Self) {
+        assert_eq!((self.width, self.height), (other.width, other.height), "sizes of films");
+        let samples = |film: &Self, tile: &Tile| -> u64 {
+            let pixels = film.part([tile.x, tile.y], [tile.width, tile.height]);
+            pixels.map(|pixel| u64::from(pixel.samples)).sum()
+        };
+        for tile in tiles_in_morton_order(self.width, self.height) {
+            if samples(other, &tile) > samples(self, &tile) {
+                for row in tile.y..tile.y + tile.height {
+                    let start = row as usize * self.width as usize + tile.x as usize;
+                    let pixels = start..start + tile.width as usize;
+                    self.pixels[pixels.clone()].copy_from_slice(&other.pixels[pixels]);
+                }
+            }
+        }
+    }
+
     /// The means of all pixels, as light or as [numbers](Image::from_numbers).
     pub fn image(&self, is_light: bool) -> Image {
         let means = self.pixels.iter().map(FilmPixel::mean).collect();
@@ -142,14 +177,27 @@ impl Film {
         }
     }
 
+    /// The pixels in a rectangle alone; of its size, less what is beyond the film.
+    #[must_use]
+    pub fn cropped(&self, region: Region) -> Self {
+        let Region { x, y, width, height } = region;
+        let pixels = self.part([x, y], [width, height]).copied().collect();
+        let within = |start: u32, size: u32, all: u32| size.min(all.saturating_sub(start));
+        let (width, height) = (within(x, width, self.width), within(y, height, self.height));
+        Self { width, height, pixels }
+    }
+
     /// The pixels in a rectangle, of which as much counts as there is.
     pub(crate) fn part(
         &self,
         [left, top]: [u32; 2],
         [width, height]: [u32; 2],
-    ) -> impl Iterator<Item = &FilmPixel> {
-        let columns = left as usize..left.saturating_add(width).min(self.width) as usize;
-        let rows = top as usize..top.saturating_add(height).min(self.height) as usize;
+    ) -> impl Iterator<Item = &FilmPixel> + Clone {
+        let within = |start: u32, size: u32, all: u32| {
+            start.min(all) as usize..start.saturating_add(size).min(all) as usize
+        };
+        let columns = within(left, width, self.width);
+        let rows = within(top, height, self.height);
         rows.flat_map(move |row| {
             let start = row * self.width as usize;
             &self.pixels[start + columns.start..start + columns.end]

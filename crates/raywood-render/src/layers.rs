@@ -4,6 +4,7 @@ use raywood_scene::Rgb;
 
 use crate::film::Film;
 use crate::integrators::Features;
+use crate::part::Region;
 
 /// Numbers that belong together, for each pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,30 @@ pub enum Values {
     Exact(Vec<f32>),
     /// Whole numbers.
     Whole(Vec<u32>),
+}
+
+impl Layer {
+    /// The pixels in a rectangle alone, which must lie in a picture of this width.
+    #[must_use]
+    pub fn cropped(&self, width: u32, region: Region) -> Self {
+        let crop = |(name, values): &(&'static str, Values)| {
+            let values = match values {
+                Values::Short(values) => Values::Short(cropped(values, width, region)),
+                Values::Exact(values) => Values::Exact(cropped(values, width, region)),
+                Values::Whole(values) => Values::Whole(cropped(values, width, region)),
+            };
+            (*name, values)
+        };
+        Self { name: self.name, channels: self.channels.iter().map(crop).collect() }
+    }
+}
+
+/// What lies in a rectangle of rows of this width.
+fn cropped<T: Copy>(values: &[T], width: u32, region: Region) -> Vec<T> {
+    let columns = region.x as usize..(region.x + region.width) as usize;
+    let rows = values.chunks_exact(width as usize);
+    let rows = rows.skip(region.y as usize).take(region.height as usize);
+    rows.flat_map(|row| &row[columns.clone()]).copied().collect()
 }
 
 /// What a layer may hold.
@@ -151,5 +176,19 @@ impl Aov {
             }
             _ => Vec::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rectangle_is_cut_out_of_every_channel() {
+        let numbers = Values::Whole((0..12).collect());
+        let layer = Layer { name: "ids", channels: vec![("A", numbers.clone()), ("B", numbers)] };
+        let part = layer.cropped(4, Region { x: 1, y: 1, width: 2, height: 2 });
+        let expected = Values::Whole(vec![5, 6, 9, 10]);
+        assert_eq!(part.channels, [("A", expected.clone()), ("B", expected)]);
     }
 }

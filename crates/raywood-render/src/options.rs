@@ -7,6 +7,7 @@ use raywood::StructureKind;
 use crate::camera_rays::CameraError;
 use crate::integrators::{INTEGRATORS, Integrator};
 use crate::lens::Lens;
+use crate::part::{Part, Region};
 use crate::pixel_filter::PixelFilter;
 use crate::tiles::TILE_SIZE;
 
@@ -156,6 +157,15 @@ pub enum RenderError {
     },
     /// What is to be shown is that of one structure, but the scene has instances, and a tree over trees.
     Instances,
+    /// A part of the picture without any of its pixels, or one that reaches beyond it.
+    NoPart {
+        /// What was asked for.
+        part: Part,
+        /// Columns of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+    },
     /// Nothing can be seen through the camera.
     Camera(CameraError),
 }
@@ -213,6 +223,24 @@ impl fmt::Display for RenderError {
                 f,
                 "the scene has instances, and no single structure of which tests or boxes could be shown"
             ),
+            Self::NoPart { part: Part::Region(region), width, height } => {
+                let Region { x, y, width: w, height: h } = region;
+                write!(
+                    f,
+                    "a region of {w}x{h} pixels at {x},{y} does not lie in a picture of {width}x{height}"
+                )
+            }
+            Self::NoPart { part, width, height } => {
+                let tiles = Part::Whole.tile_count(*width, *height);
+                let tiles =
+                    format!("a picture of {width}x{height} pixels has {tiles} tiles of 32x32");
+                match part {
+                    Part::Share { index, count } => {
+                        write!(f, "share {} of {count} has no tile: {tiles}", u64::from(*index) + 1)
+                    }
+                    _ => f.write_str(&tiles),
+                }
+            }
             Self::Camera(error) => error.fmt(f),
         }
     }

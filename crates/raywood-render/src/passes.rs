@@ -11,21 +11,41 @@ use rayon::prelude::*;
 use raywood_scene::{Camera, Light, Rgb, luminance};
 
 use crate::PreparedScene;
+use crate::exposure::preview;
 use crate::film::{Film, FilmPixel};
 use crate::integrators::{Frame, TileRenderer};
 use crate::lights::Lights;
 use crate::options::{RenderError, RenderOptions};
+use crate::part::Part;
 use crate::progress::{Progress, Standing};
 use crate::stats::{RayCounts, RenderStats};
-use crate::tiles::{SQUARE_SIZE, Tile, TilePass, TilePixels, tiles_in_morton_order};
+use crate::tiles::{SQUARE_SIZE, Tile, TilePass, TilePixels};
+
+/// What is rendered.
+#[derive(Clone, Copy)]
+pub struct Shot<'a> {
+    /// The scene.
+    pub scene: &'a PreparedScene<'a>,
+    /// From where it is seen.
+    pub camera: &'a Camera,
+    /// What lights it; usually its own lights, or those of its [default view](crate::default_view).
+    pub lights: &'a [Light],
+    /// How it is rendered.
+    pub options: &'a RenderOptions,
+    /// Which pixels.
+    pub part: Part,
+}
 
 /// When a picture is done, beside having all samples that its options ask for: what comes first counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// The relative error at which a square of pixels is done: the root mean square of its standard errors over its mean brightness and a tenth of the picture's.
+    /// The relative error at which a square of pixels is done: the root mean square of its standard errors over its mean brightness and a tenth of that of a small picture of all.
     pub noise: Option<f32>,
     /// How long passes may take.
     pub time: Option<Duration>,
+    /// Whether pixels get all samples in one pass, as [`render`](crate::render) gives them, so that the picture is the same, bit for bit; nothing is known of its noise then. Without effect if
+    /// the goal [is open](Self::is_open).
+    pub in_one_pass: bool,
 }
 
 impl Goal {
@@ -33,6 +53,22 @@ impl Goal {
     pub fn is_open(&self) -> bool {
         self.noise.is_some() || self.time.is_some()
     }
+
+    /// How many samples the next pass adds to pixels that have so many: few at first, so that there is soon a picture and a variance, then so many that no tile waits for long.
+    fn pass_samples(&self, samples: u32) -> u32 {
+        match self.in_one_pass && !self.is_open() {
+            true => u32::MAX,
+            false => samples.clamp(4, 16).next_power_of_two(),
+        }
+    }
+}
+
+/// Who keeps what there is of a picture while it is rendered, in case that it is broken off.
+pub struct Keeper<'a> {
+    /// Between how much work it is called at most; it tells after how much next.
+    pub every: Duration,
+    /// Is shown the film between tiles, while nothing is rendered.
+    pub keep: &'a mut (dyn FnMut(&Film) -> Duration + Send),
 }
 
 /// Why there are no more passes.
@@ -51,31 +87,33 @@ pub enum Ended {
 /// Samples a pixel has at least before its square may be done.
 const FEWEST_SAMPLES: u32 = 16;
 
+/// Between two pauses something is rendered, whatever a keeper says.
+const SHORTEST_WORK: Duration = Duration::from_millis(10);
+
 /// Of pictures whose number of samples is open textures are looked at as if there were so many.
 const OPEN_SAMPLES: u32 = 16;
 
 /// Renders passes and adds them to a film, on the threads of the current rayon pool, until the options' samples are there or a goal is reached.
 ///
-/// A film with light goes on as if it had never stopped: which samples come next follows from those that are there. Without a limit of time the film is the
-/// same, bit for bit, for any number of threads. After [`Progress::cancel`] it keeps all tiles that were finished, if every pixel has a
-/// sample. Of a picture rendered [at once](crate::render) it differs in last digits, as sums are made in another order.
+/// A film with light goes on as if it had never stopped: which samples of a tile come next follows from those that it has, and a tile is there whole or not at all. Without a limit of time the film is the
+/// same, bit for bit, for any number of threads, wherever it was broken off, and whichever [parts](Part) it was put together from. After [`Progress::cancel`] it keeps all tiles that were finished. Of a
+/// picture rendered [at once](crate::render) it differs in last digits, as sums are made in another order, unless all is [in one pass](Goal::in_one_pass).
 ///
 /// # Errors
 ///
-/// As [`render`](crate::render); [`RenderError::Cancelled`] if some pixels have no sample yet.
+/// As [`render`](crate::render); [`RenderError::Cancelled`] if some pixels have no sample yet, though others may have; [`RenderError::NoPart`] for a part without pixels of the picture.
 ///
 /// # Panics
 ///
 /// If the film is of another size than the picture.
 pub fn render_passes(
-    scene: &PreparedScene<'_>,
-    camera: &Camera,
-    lights: &[Light],
-    options: &RenderOptions,
+    shot: &Shot<'_>,
     goal: &Goal,
     film: &mut Film,
     progress: &Progress,
+    mut keeper: Option<Keeper<'_>>,
 ) -> Result<(RenderStats, Ended), RenderError> {
+    let &Shot { scene, camera, lights, options, part } = shot;
     options.validate()?;
     let bytes = options.memory_bytes().saturating_add(Film::bytes(options.width, options.height));
     let (width, height) = (options.width, options.height);
@@ -83,21 +121,30 @@ pub fn render_passes(
         return Err(RenderError::ImageTooLarge { width, height, bytes });
     }
     assert_eq!((film.width(), film.height()), (width, height), "the size of the film");
+    part.validate(width, height)?;
+    let tiles = part.tiles(width, height);
 
-    let lights = Lights::new(lights);
     let started = Instant::now();
+    // Of the whole picture, whichever part of it is rendered and how far it is: so each tile can be judged on its own.
+    let mean = match goal.noise {
+        Some(_) => mean_luminance(preview(scene, camera, lights, options, progress)?.pixels()),
+        None => 0.0,
+    };
+    let lights = Lights::new(lights);
     let mut frame = Frame::new(scene, &lights, camera, options, progress)?;
     if goal.is_open() {
         frame.footprint_samples = OPEN_SAMPLES.min(options.samples);
     }
     let renderer = options.integrator.start(&frame);
-    let mut work = TileWork::all(&tiles_in_morton_order(width, height), bytes)?;
+    let mut work = TileWork::all(&tiles, bytes)?;
+    let pixels: u64 = tiles.iter().map(|tile| u64::from(tile.width * tile.height)).sum();
 
     let mut rays = RayCounts::default();
     let mut rendered = 0u64;
+    let mut pause: Option<Instant> =
+        keeper.as_ref().and_then(|keeper| started.checked_add(keeper.every.max(SHORTEST_WORK)));
     let ended = loop {
         // Choose what each square is given next.
-        let mean = mean_luminance(film);
         let threshold = goal.noise.unwrap_or(0.0);
         let is_done = |square: [u32; 2], samples: u32| {
             goal.noise.is_some()
@@ -112,7 +159,6 @@ pub fn render_passes(
                 _ => {
                     let left = time.saturating_sub(started.elapsed()).as_secs_f64();
                     let each = started.elapsed().as_secs_f64() / rendered as f64;
-                    let pixels = u64::from(width) * u64::from(height);
                     (left / (each * pixels as f64)) as u32
                 }
             };
@@ -128,30 +174,40 @@ pub fn render_passes(
                     continue;
                 }
                 are_all_done = false;
-                let count = pass_samples(samples).min(most).min(options.samples - samples);
+                let count = goal.pass_samples(samples).min(most).min(options.samples - samples);
                 pass.samples[place] = samples..samples + count;
                 planned += u64::from(count) * tile.pixels_in_blocks(square).count() as u64;
             }
         }
         if are_all_done {
-            let (fewest, _) = film.samples();
+            let (fewest, _) = film.samples_in(&part);
             break if fewest >= options.samples { Ended::Samples } else { Ended::Noise };
         }
         if planned == 0 {
             break Ended::Time;
         }
 
-        // Render, and keep what is whole.
+        // Render, and keep what is whole; what was done before a pause is not done again after it.
         progress.start(planned);
-        rays +=
-            work.par_iter_mut().with_max_len(1).map(|work| work.render(&*renderer, progress)).sum();
-        for work in &work {
-            work.add_to(film);
+        loop {
+            let render = |work: &mut TileWork| work.render(&*renderer, progress, pause);
+            rays += work.par_iter_mut().with_max_len(1).map(render).sum();
+            work.iter_mut().for_each(|work| work.add_to(film));
+            progress.set_standing(standing(film, &part, options, goal, started.elapsed()));
+            if progress.is_cancelled() {
+                break;
+            }
+            if let (Some(keeper), true) = (&mut keeper, pause.is_some_and(is_past)) {
+                let next = (keeper.keep)(film).max(SHORTEST_WORK);
+                pause = Instant::now().checked_add(next);
+            }
+            if work.iter().all(|work| work.pass.is_empty()) {
+                break;
+            }
         }
         rendered += planned;
-        progress.set_standing(standing(film, options, goal, started.elapsed()));
         if progress.is_cancelled() {
-            let (fewest, _) = film.samples();
+            let (fewest, _) = film.samples_in(&part);
             if fewest == 0 {
                 return Err(RenderError::Cancelled);
             }
@@ -162,9 +218,8 @@ pub fn render_passes(
     Ok((RenderStats { rays, elapsed: started.elapsed(), threads }, ended))
 }
 
-/// How many samples a pass adds to pixels that have so many: few at first, so that there is soon a picture and a variance, then so many that no tile waits for long.
-fn pass_samples(samples: u32) -> u32 {
-    samples.clamp(4, 16).next_power_of_two()
+fn is_past(time: Instant) -> bool {
+    Instant::now() >= time
 }
 
 /// The samples of the pixels of a square: of its first, as all have as many.
@@ -172,10 +227,11 @@ fn first_samples(film: &Film, corner: [u32; 2]) -> u32 {
     film.part(corner, [1; 2]).next().map_or(0, |pixel| pixel.samples)
 }
 
-/// The mean luminance of a film.
-fn mean_luminance(film: &Film) -> f32 {
-    let sum: f64 = film.pixels().iter().map(|pixel| f64::from(luminance(pixel.mean()))).sum();
-    (sum / film.pixels().len().max(1) as f64) as f32
+/// The mean luminance of some pixels.
+fn mean_luminance<'a>(pixels: impl IntoIterator<Item = &'a Rgb>) -> f32 {
+    let luminances = pixels.into_iter().map(|&pixel| f64::from(luminance(pixel)));
+    let (count, sum) = luminances.fold((0u64, 0.0), |(count, sum), one| (count + 1, sum + one));
+    (sum / count.max(1) as f64) as f32
 }
 
 /// The relative error of a square of 16x16 pixels of a film, given by its upper left corner: the root of the mean variance of its pixels' means, divided by
@@ -196,14 +252,14 @@ fn relative_error(film: &Film, corner: [u32; 2], mean: f32) -> f32 {
     (variance / count).sqrt() / (light / count + OF_THE_PICTURE * mean)
 }
 
-/// The noise of a film: the root mean square of the relative errors of all its squares. Infinite before there are two passes everywhere; 0 without pixels.
-pub fn noise(film: &Film) -> f32 {
-    let mean = mean_luminance(film);
-    let starts = |size: u32| (0..size).step_by(SQUARE_SIZE as usize);
+/// The noise of a part of a film: the root mean square of the relative errors of all its squares. Infinite before there are two passes everywhere; 0 without pixels.
+pub fn noise(film: &Film, part: &Part) -> f32 {
+    let means: Vec<_> = part.pixels(film).map(FilmPixel::mean).collect();
+    let mean = mean_luminance(&means);
     let (mut sum, mut count) = (0.0, 0u32);
-    for y in starts(film.height()) {
-        for x in starts(film.width()) {
-            sum += relative_error(film, [x, y], mean).powi(2);
+    for tile in part.tiles(film.width(), film.height()) {
+        for [x, y] in tile.squares() {
+            sum += relative_error(film, [tile.x + x, tile.y + y], mean).powi(2);
             count += 1;
         }
     }
@@ -211,10 +267,20 @@ pub fn noise(film: &Film) -> f32 {
 }
 
 /// How far a picture is.
-fn standing(film: &Film, options: &RenderOptions, goal: &Goal, elapsed: Duration) -> Standing {
-    let noise = noise(film);
-    let (_, samples) = film.samples();
-    let by_samples = f64::from(samples) / f64::from(options.samples);
+fn standing(
+    film: &Film,
+    part: &Part,
+    options: &RenderOptions,
+    goal: &Goal,
+    elapsed: Duration,
+) -> Standing {
+    let noise = noise(film, part);
+    let (_, samples) = film.samples_in(part);
+    // Of a single pass nobody has to guess.
+    let by_samples = match goal.in_one_pass {
+        true => film.mean_samples_in(part) / f64::from(options.samples),
+        false => f64::from(samples) / f64::from(options.samples),
+    };
     // The error falls with the root of the number of samples.
     let by_noise = goal.noise.map_or(0.0, |goal| f64::from(goal / noise).powi(2));
     let by_time = goal.time.map_or(0.0, |time| elapsed.as_secs_f64() / time.as_secs_f64());
@@ -244,10 +310,15 @@ impl TileWork {
         Ok(work)
     }
 
-    /// Renders what is next, if nobody asks to stop.
-    fn render(&mut self, renderer: &dyn TileRenderer, progress: &Progress) -> RayCounts {
+    /// Renders what is next, if nobody asks to stop and it is no time for a pause.
+    fn render(
+        &mut self,
+        renderer: &dyn TileRenderer,
+        progress: &Progress,
+        pause: Option<Instant>,
+    ) -> RayCounts {
         self.is_whole = false;
-        if self.pass.is_empty() || progress.is_cancelled() {
+        if self.pass.is_empty() || progress.is_cancelled() || pause.is_some_and(is_past) {
             return RayCounts::default();
         }
         self.sums = [Rgb::ZERO; _];
@@ -257,12 +328,13 @@ impl TileWork {
         rays
     }
 
-    /// Adds what was rendered to a film, if it is whole.
-    fn add_to(&self, film: &mut Film) {
+    /// Adds what was rendered to a film, if it is whole, and then has nothing to do.
+    fn add_to(&mut self, film: &mut Film) {
         if !self.is_whole {
             return;
         }
-        for (samples, square) in self.pass.squares(&self.tile) {
+        self.is_whole = false;
+        for (samples, square) in std::mem::take(&mut self.pass).squares(&self.tile) {
             let Range { start, end } = samples;
             for (number, place) in self.tile.pixels_in_blocks(square) {
                 let pass = FilmPixel {

@@ -276,6 +276,11 @@ impl<'a> PreparedScene<'a> {
         self.environment = environment;
     }
 
+    /// The panorama that was [put around](Self::set_environment) the scene in place of its own.
+    pub fn other_environment(&self) -> Option<&Environment> {
+        self.environment.as_ref()
+    }
+
     /// The panorama around the scene, if there is one.
     #[inline(always)]
     pub(crate) fn environment(&self) -> Option<&Environment> {

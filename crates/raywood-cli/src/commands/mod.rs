@@ -5,6 +5,7 @@ mod build;
 mod compare;
 mod info;
 mod lecture;
+mod merge;
 mod query;
 mod render;
 mod scenes;
@@ -18,7 +19,9 @@ use crate::failure::Failure;
 pub(crate) enum Command {
     // Its short help fills a screen already.
     #[command(mut_arg("simd", |arg| arg.hide_short_help(true)))]
-    Render(render::Args),
+    #[command(mut_arg("preset", |arg| arg.hide_short_help(true)))]
+    Render(Box<render::Args>),
+    Merge(merge::Args),
     Build(build::Args),
     Compare(compare::Args),
     Bench(bench::Args),
@@ -33,6 +36,7 @@ impl Command {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(args),
+            Self::Merge(args) => merge::run(args),
             Self::Build(args) => build::run(args),
             Self::Compare(args) => compare::run(args),
             Self::Bench(args) => bench::run(args),

@@ -2,8 +2,8 @@
 
 use raywood::Vec3;
 use raywood_render::{
-    Features, Film, FilmPixel, Goal, Image, Integrator, NO_ID, PreparedScene, Progress,
-    RenderOptions, denoise, features, primitive_ids, render_passes,
+    Features, Film, FilmPixel, Goal, Image, Integrator, NO_ID, Part, PreparedScene, Progress,
+    RenderOptions, Shot, denoise, features, primitive_ids, render_passes,
 };
 use raywood_scene::{Camera, LightKind, Material, Rgb, Scene};
 
@@ -100,9 +100,9 @@ fn noise_falls_and_edges_and_textures_stay() {
     let found = features_of(&scene, &view, &few);
     let prepared = PreparedScene::new(&scene).expect("a tree");
     let mut film = Film::new(80, 50).expect("a film");
-    let (goal, progress) = (Goal::default(), Progress::new());
-    render_passes(&prepared, &view, &scene.lights, &few, &goal, &mut film, &progress)
-        .expect("passes");
+    let (camera, lights, part) = (&view, &scene.lights, Part::Whole);
+    let shot = Shot { scene: &prepared, camera, lights, options: &few, part };
+    render_passes(&shot, &Goal::default(), &mut film, &Progress::new(), None).expect("passes");
     let (reference, _) = image(&scene, &view, &options(80, 50, 4096));
     let error = |image: &Image, pixels: &[usize]| {
         let squares = pixels.iter().map(|&pixel| {

@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use raywood_render::{
-    Ended, Film, Goal, Image, Integrator, Lens, PixelFilter, PreparedScene, Progress, RenderError,
-    RenderOptions, depth_at, key_exposure, noise, render, render_passes,
+    Ended, Film, FilmPixel, Goal, Image, Integrator, Keeper, Lens, Part, PixelFilter,
+    PreparedScene, Progress, Region, RenderError, RenderOptions, Shot, depth_at, key_exposure,
+    noise, render, render_passes,
 };
 use raywood_scene::{Camera, Material, Rgb, Scene, luminance};
 
@@ -39,14 +40,23 @@ fn lit_floor_camera() -> Camera {
     camera([0.0, 1.2, 3.0], [0.0, 0.3, 0.0])
 }
 
+/// A whole picture, lit by the scene's lights.
+fn shot<'a>(
+    prepared: &'a PreparedScene<'a>,
+    camera: &'a Camera,
+    options: &'a RenderOptions,
+) -> Shot<'a> {
+    let lights = &prepared.scene().lights;
+    Shot { scene: prepared, camera, lights, options, part: Part::Whole }
+}
+
 /// A film of passes, on so many threads.
 fn film(scene: &Scene, view: &Camera, options: &RenderOptions, goal: Goal) -> (Film, Ended) {
     let prepared = PreparedScene::new(scene).expect("a tree");
     let mut film = Film::new(options.width, options.height).expect("a film");
-    let (lights, progress) = (&scene.lights, Progress::new());
+    let shot = shot(&prepared, view, options);
     let (stats, ended) =
-        render_passes(&prepared, view, lights, options, &goal, &mut film, &progress)
-            .expect("passes");
+        render_passes(&shot, &goal, &mut film, &Progress::new(), None).expect("passes");
     let rays: u64 = film.pixels().iter().map(|pixel| u64::from(pixel.samples)).sum();
     assert_eq!(stats.rays.primary, rays);
     (film, ended)
@@ -92,7 +102,7 @@ fn noise_decides_the_same_for_any_number_of_threads_and_favours_no_side() {
         let (fewest, most) = one.samples();
         assert_eq!(ended, Ended::Noise);
         assert!(fewest >= 16 && fewest < most && most < 4096, "{fewest} to {most} samples");
-        assert!(noise(&one) <= 0.05);
+        assert!(noise(&one, &Part::Whole) <= 0.05);
         sum += mean(&one.image(true));
         seeds += 1;
     }
@@ -121,7 +131,8 @@ fn what_was_stopped_goes_on_as_if_nothing_had_happened() {
 
     let mut film = Film::new(100, 70).expect("a film");
     let passes = |film: &mut Film, progress: &Progress| {
-        render_passes(&prepared, &view, &scene.lights, &options, &Goal::default(), film, progress)
+        let shot = shot(&prepared, &view, &options);
+        render_passes(&shot, &Goal::default(), film, progress, None)
     };
     let mut stops = 0;
     loop {
@@ -153,6 +164,102 @@ fn what_was_stopped_goes_on_as_if_nothing_had_happened() {
         }
     }
     assert!(film == whole, "after {stops} stops");
+}
+
+#[test]
+fn a_picture_is_the_same_however_often_it_is_paused_or_broken_off_and_whatever_its_parts() {
+    let scene = lit_floor();
+    let prepared = PreparedScene::new(&scene).expect("a tree");
+    let view = lit_floor_camera();
+    let whitted = Integrator::by_name("whitted").expect("a name");
+    let in_one_pass = Goal { in_one_pass: true, ..Goal::default() };
+    let noise = Goal { noise: Some(0.2), ..Goal::default() };
+    for (goal, integrator, samples) in
+        [(noise, path(1, 1, 1).integrator, 4096), (in_one_pass, whitted, 5)]
+    {
+        let options = RenderOptions { integrator, ..path(130, 70, samples) };
+        let (whole, how) = film(&scene, &view, &options, goal);
+        if goal.in_one_pass {
+            assert!(whole.image(true) == image(&scene, &view, &options).0, "as at once");
+        }
+        let whole_shot = shot(&prepared, &view, &options);
+
+        // Broken off in the middle of passes: what the keeper has seen last goes on in another film.
+        let mut kept = Film::new(130, 70).expect("a film");
+        for threads in [1, 2, 1, 3] {
+            let mut film = kept.clone();
+            let progress = Progress::new();
+            let (mut calls, mut seen) = (0, None);
+            let mut keep = |film: &Film| {
+                calls += 1;
+                seen = Some(film.clone());
+                if calls == 3 {
+                    progress.cancel();
+                }
+                Duration::ZERO
+            };
+            let keeper = Keeper { every: Duration::ZERO, keep: &mut keep };
+            let passes = || render_passes(&whole_shot, &goal, &mut film, &progress, Some(keeper));
+            match pool(threads).install(passes) {
+                Ok((_, ended)) if ended == how => seen = Some(film),
+                Ok((_, Ended::Cancelled)) | Err(RenderError::Cancelled) => {}
+                other => panic!("{other:?}"),
+            }
+            kept = seen.expect("it was kept");
+        }
+        let ended = render_passes(&whole_shot, &goal, &mut kept, &Progress::new(), None);
+        assert_eq!(ended.expect("the rest").1, how);
+        assert!(kept == whole, "broken off");
+
+        // In shares, one of which is there twice, the other time not as far; and in regions.
+        let region = |x, y, width, height| Part::Region(Region { x, y, width, height });
+        let share = |index| Part::Share { index, count: 3 };
+        let parts = [
+            vec![share(2), share(0), share(1)],
+            vec![region(0, 0, 50, 70), region(40, 0, 90, 33), region(50, 33, 80, 37)],
+        ];
+        for parts in parts {
+            let mut united = Film::new(130, 70).expect("a film");
+            for part in parts {
+                let mut film = Film::new(130, 70).expect("a film");
+                let shot = Shot { part, ..whole_shot };
+                let (_, ended) =
+                    render_passes(&shot, &goal, &mut film, &Progress::new(), None).expect("a part");
+                assert_eq!(ended, how);
+                united.unite(&film);
+                united.unite(&Film::new(130, 70).expect("a film"));
+            }
+            assert!(united == whole, "put together");
+        }
+        let nothing = [
+            region(130, 0, 1, 1),
+            region(0, 69, 1, 2),
+            region(0, 0, 0, 1),
+            Part::Share { index: 15, count: 16 },
+        ];
+        for part in nothing {
+            let mut film = Film::new(130, 70).expect("a film");
+            let shot = Shot { part, ..whole_shot };
+            let error = render_passes(&shot, &goal, &mut film, &Progress::new(), None);
+            assert!(matches!(error, Err(RenderError::NoPart { .. })), "{part:?}");
+        }
+    }
+}
+
+#[test]
+fn films_are_cropped_and_united_by_tiles() {
+    let pixels = (0..6).map(|number| one_sample(number as f32)).collect();
+    let film = Film::from_pixels(3, 2, pixels).expect("a film");
+    let region = Region { x: 1, y: 0, width: 2, height: 2 };
+    let sums: Vec<_> = film.cropped(region).pixels().iter().map(|pixel| pixel.sum.x).collect();
+    assert_eq!(sums, [1.0, 2.0, 4.0, 5.0]);
+    let beyond = film.cropped(Region { x: 2, y: 1, width: 9, height: u32::MAX });
+    assert_eq!((beyond.width(), beyond.height(), beyond.pixels().len()), (1, 1, 1));
+    assert!(film.cropped(Region { x: 7, y: 7, width: 1, height: 1 }).pixels().is_empty());
+}
+
+fn one_sample(light: f32) -> FilmPixel {
+    FilmPixel { sum: Rgb::splat(light), samples: 1, passes: 1, deviation: 0.0 }
 }
 
 #[test]
@@ -294,14 +401,16 @@ fn lenses_and_films_that_make_no_sense_are_refused() {
     assert_eq!(options.validate(), Ok(()));
     let mut film = Film::new(1, 1).expect("a film");
     let (view, progress) = (lit_floor_camera(), Progress::new());
-    let error =
-        render_passes(&prepared, &view, &[], &options, &Goal::default(), &mut film, &progress);
+    let mut passes = |options: &RenderOptions, progress: &Progress| {
+        let shot = shot(&prepared, &view, options);
+        render_passes(&shot, &Goal::default(), &mut film, progress, None)
+    };
+    let error = passes(&options, &progress);
     assert!(matches!(error, Err(RenderError::ImageTooLarge { .. })));
     let cancelled = Progress::new();
     cancelled.cancel();
     let options = path(1, 1, 1);
-    let error =
-        render_passes(&prepared, &view, &[], &options, &Goal::default(), &mut film, &cancelled);
+    let error = passes(&options, &cancelled);
     assert_eq!(error.err(), Some(RenderError::Cancelled));
     assert!(render(&prepared, &view, &[], &options, &Progress::new()).is_ok());
 }

@@ -1,30 +1,38 @@
 //! `raywood render`: a scene in, a picture out.
 
-mod image_args;
+mod layer_args;
 mod lens_args;
 mod report;
 mod sampling_args;
+mod work_args;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
 use raywood::StructureKind;
-use raywood_render::{Ended, HeatQuantity, INTEGRATORS, Integrator, RenderOptions};
+use raywood_render::{
+    Ended, HeatQuantity, INTEGRATORS, Integrator, Part, PreparedScene, RenderOptions, View,
+};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
+use crate::checkpoint::Begun;
 use crate::failure::Failure;
+use crate::image_args::{ImageArgs, ImageFile, Made};
 use crate::parse::{Size, above_zero, heat_quantity, integrator, structure_kind};
 use crate::picture::{self, Request};
 use crate::print;
 use crate::progress_bar::during_step;
 use crate::scene_source::{self, Loaded};
+use crate::settings::Settings;
 use crate::simd_args::SimdArgs;
 use crate::surroundings::Surroundings;
 use crate::view_args::ViewArgs;
-use image_args::{ImageArgs, ImageFile, Made};
+use layer_args::LayerArgs;
 use lens_args::LensArgs;
 use report::Report;
 use sampling_args::SamplingArgs;
+use work_args::WorkArgs;
 
 /// Render a model file or a built-in scene to a picture.
 #[derive(clap::Args)]
@@ -80,60 +88,13 @@ pub(crate) struct Args {
     image: ImageArgs,
 
     #[command(flatten)]
+    layers: LayerArgs,
+
+    #[command(flatten)]
     sampling: SamplingArgs,
 
     #[command(flatten)]
-    view: ViewArgs,
-
-    /// Panorama around the scene (.hdr or .exr), a sky, or none
-    ///
-    /// A Radiance or OpenEXR picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it. `sky` is a clear sky by formula, whose sun takes the place of
-    /// the scene's lights: `sky:elevation=35,azimuth=130,turbidity=2.2`, degrees above the horizon and clockwise from the default view's direction, and how hazy the air is, from 1 to 10.
-    #[arg(
-        help_heading = "View and light",
-        long,
-        value_name = "FILE|sky|none",
-        hide_short_help = true
-    )]
-    environment: Option<Surroundings>,
-
-    #[command(flatten)]
-    lens: LensArgs,
-
-    /// Acceleration structure to trace with
-    ///
-    /// The picture is the same with each but for last digits, which show in single pixels; times and memory differ. A wrong name is answered with those that exist.
-    #[arg(help_heading = "Acceleration structure", long, value_name = "NAME", value_parser = structure_kind)]
-    structure: Option<StructureKind>,
-
-    #[command(flatten)]
-    build: BuildArgs,
-
-    #[command(flatten)]
-    simd: SimdArgs,
-
-    /// Show the structure's work for each pixel
-    ///
-    /// Instead of the scene: `nodes` (nodes or cells entered), `boxes` (box tests), `primitives` (primitive tests) or `tests` (both), the mean over the pixel's rays from the eye. A strip with a legend is added below the picture.
-    #[arg(help_heading = "Acceleration structure", long, value_name = "QUANTITY", value_parser = heat_quantity)]
-    heatmap: Option<HeatQuantity>,
-
-    /// Where the scale of the heat map ends
-    ///
-    /// To compare several maps. Else it ends where 99.5% of the pixels lie below, rounded up; the legend then has `>=` before its last number if some lie above.
-    #[arg(help_heading = "Acceleration structure", long, value_name = "N", value_parser = above_zero, requires = "heatmap", hide_short_help = true)]
-    heatmap_max: Option<f32>,
-
-    /// Draw the structure's boxes of a level
-    ///
-    /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
-    #[arg(
-        help_heading = "Acceleration structure",
-        long,
-        value_name = "LEVEL",
-        hide_short_help = true
-    )]
-    show_bounds: Option<usize>,
+    work: WorkArgs,
 }
 
 /// So many samples, in two passes, tell how noisy a picture is.
@@ -147,55 +108,25 @@ fn integrators_help() -> String {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    // Say what is wrong with the request before any work is done for it.
     args.simd.activate()?;
-    let mut options = RenderOptions {
-        width: args.size.width,
-        height: args.size.height,
-        max_depth: args.depth,
-        opaque_shadows: args.opaque_shadows,
-        integrator: args.integrator,
-        ..RenderOptions::default()
-    };
-    args.sampling.apply(&mut options);
-    options.validate().map_err(Failure::bad_input)?;
-    let is_drawn = args.heatmap.is_some() || args.show_bounds.is_some();
-    let ImageFile { file, format, options: mut write_options } = args.image.file(is_drawn)?;
-    if args.image.denoise {
-        let is_in_passes = args.integrator.name == "path"
-            || (args.sampling.goal().is_open() && args.integrator.shows_light);
-        if !is_in_passes || is_drawn || options.samples < LEAST_TO_DENOISE {
-            return Err(Failure::BadInput(format!(
-                "--denoise: expected integrator path, or light with --noise or --time, {LEAST_TO_DENOISE} samples per pixel or more, and no drawing"
-            )));
-        }
-    }
-
     let pool = thread_pool(args.threads.map(usize::from))?;
+    render(args, &pool)
+}
+
+/// Loads the scene and renders all that is asked for.
+fn render(args: &Args, pool: &ThreadPool) -> Result<(), Failure> {
+    // Say what is wrong with the request before any work is done for it.
+    let options = args.options()?;
+    let image = args.image_file()?;
+    let begun = args.work.begin()?;
+
     let surroundings = args.environment.as_ref();
     let environment = pool.install(|| surroundings.map(Surroundings::panorama).transpose())?;
-    let loaded =
-        during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
-    loaded.print_warnings();
-    let left_out = options.integrator.left_out(&loaded.scene);
-    if !left_out.is_empty() {
-        let (name, left_out) = (options.integrator.name, left_out.join(" and "));
-        print::warning(format_args!(
-            "integrator `{name}` leaves out {left_out}, which `--integrator path` shows"
-        ));
-    }
-    let other_structure = args.structure.is_some_and(|kind| kind != StructureKind::default());
-    let loaded = match args {
-        _ if other_structure => loaded.without_instances("another structure")?,
-        Args { heatmap: Some(_), .. } => loaded.without_instances("a heat map")?,
-        Args { show_bounds: Some(_), .. } => loaded.without_instances("a picture of bounds")?,
-        _ => loaded,
-    };
-    let Loaded { mut scene, tree, time: load } = loaded;
+    let Loaded { mut scene, tree, time: load } = args.load(pool, &options)?;
     args.view.orient(&mut scene);
     let kind = args.structure.unwrap_or_default();
     let started = Instant::now();
-    let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
+    let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, pool)?;
     let sky_lights = surroundings
         .zip(environment.as_ref())
         .and_then(|(all, panorama)| all.lights(panorama, prepared.axes()));
@@ -205,69 +136,218 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let started = Instant::now();
     let aspect = args.size.width as f32 / args.size.height as f32;
     let choose = || args.view.view(&prepared, aspect, sky_lights);
-    let view = &during_step("choosing a view", || pool.install(choose))?;
+    let view = during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
-    options.lens = args.lens.lens(&prepared, &view.camera, args.size)?;
-    options.validate().map_err(Failure::bad_input)?;
-    let request = Request {
-        prepared: &prepared,
-        view,
-        options: &options,
-        heatmap: args.heatmap,
-        heatmap_max: args.heatmap_max,
-        show_bounds: args.show_bounds,
-        exposure: args.image.exposure,
-        tone_map: args.image.tone_map(),
-        keeps_light: format.holds_light,
-        goal: args.sampling.goal(),
-        aovs: args.image.aovs(),
-        denoise: args.image.denoise,
-    };
-    let drawn = picture::draw(&request, &pool)?;
 
-    let started = Instant::now();
-    let samples = drawn.samples(options.samples);
-    let is_shown = !format.holds_light && !is_drawn && options.integrator.shows_light;
-    write_options.metadata = args.image.metadata(&Made {
-        options: &options,
-        samples: &samples,
-        is_denoised: drawn.passes.as_ref().is_some_and(|passes| passes.is_denoised),
-        exposure: is_shown.then_some(drawn.exposure),
-        seconds: drawn.render.elapsed.as_secs_f64(),
-        threads: drawn.render.threads,
-    });
-    file.write_with(|writer| {
-        drawn.write(format, &write_options, writer).map_err(|error| file.cannot_write(&error))
-    })?;
-    let write = started.elapsed();
-    let is_cut_short = drawn.passes.as_ref().is_some_and(|passes| passes.ended == Ended::Cancelled);
+    let is_saved = args.build.wanted(tree.as_ref(), kind).is_some();
+    let times = Times { load, build, view: chosen };
+    let (prepared, options) = (&prepared, &options);
+    let stage = Stage { args, options, prepared, kind, is_saved, times, pool };
+    stage.shoot(&view, begun, image)
+}
 
-    let structure = prepared.stats();
-    let report = Report {
-        args,
-        options: &options,
-        samples: &samples,
-        passes: drawn.passes,
-        scene: &scene,
-        kind,
-        is_saved: args.build.wanted(tree.as_ref(), kind).is_some(),
-        structure,
-        load,
-        build,
-        view: chosen,
-        render: drawn.render,
-        heat: drawn.heat,
-        bounds: drawn.bounds,
-        exposure: drawn.exposure,
-        write,
-    };
-    if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }?;
-    if is_cut_short {
-        return Err(Failure::Interrupted(format!(
-            "after {samples} of {} samples per pixel; {} is what there was",
-            options.samples,
-            args.image.output.display()
-        )));
+impl Args {
+    /// How the picture is rendered, as far as that is known before the scene is.
+    ///
+    /// # Errors
+    ///
+    /// Options that make no sense, or not together.
+    fn options(&self) -> Result<RenderOptions, Failure> {
+        let Size { width, height } = self.size;
+        let mut options = RenderOptions {
+            width,
+            height,
+            max_depth: self.depth,
+            opaque_shadows: self.opaque_shadows,
+            integrator: self.integrator,
+            ..RenderOptions::default()
+        };
+        self.sampling.apply(&mut options);
+        options.validate().map_err(Failure::bad_input)?;
+        let part = self.work.part();
+        part.validate(width, height).map_err(Failure::bad_input)?;
+        if self.is_drawn() && (part != Part::Whole || self.work.checkpoint.is_some()) {
+            return Err(Failure::BadInput(
+                "--checkpoint, --region and --tile are for light: heat maps and bounds are drawn at once, expected neither".to_owned(),
+            ));
+        }
+        if self.layers.denoise {
+            if part != Part::Whole {
+                return Err(Failure::BadInput(
+                    "--denoise: needs the whole picture: expected neither --region nor --tile, but of shares that were merged --checkpoint with --resume".to_owned(),
+                ));
+            }
+            let is_in_passes = self.integrator.name == "path"
+                || (self.sampling.goal().is_open() && self.integrator.shows_light);
+            if !is_in_passes || self.is_drawn() || options.samples < LEAST_TO_DENOISE {
+                return Err(Failure::BadInput(format!(
+                    "--denoise: expected integrator path, or light with --noise or --time, {LEAST_TO_DENOISE} samples per pixel or more, and no drawing"
+                )));
+            }
+        }
+        Ok(options)
     }
-    Ok(())
+
+    /// Whether the picture is drawn, not light.
+    fn is_drawn(&self) -> bool {
+        self.heatmap.is_some() || self.show_bounds.is_some()
+    }
+
+    /// The picture's file, if one is written: a share is not unless it is named.
+    fn image_file(&self) -> Result<Option<ImageFile>, Failure> {
+        if matches!(self.work.part(), Part::Share { .. }) && !self.image.is_named() {
+            return match self.layers.aovs() {
+                [] => Ok(None),
+                _ => Err(Failure::BadInput(
+                    "--aovs: of a share no picture is written, expected -o FILE.exr".to_owned(),
+                )),
+            };
+        }
+        let file = self.image.file(self.is_drawn())?;
+        self.layers.check(&file)?;
+        if self.work.checkpoint.as_deref() == Some(&file.path) {
+            let name = file.path.display();
+            return Err(Failure::BadInput(format!(
+                "{name}: cannot be both picture and checkpoint"
+            )));
+        }
+        Ok(Some(file))
+    }
+
+    /// The scene, with what is to be said about it said.
+    fn load(&self, pool: &ThreadPool, options: &RenderOptions) -> Result<Loaded, Failure> {
+        let load = || pool.install(|| scene_source::load(&self.scene, self.strict));
+        let loaded = during_step("loading", load)?;
+        loaded.print_warnings();
+        let left_out = options.integrator.left_out(&loaded.scene);
+        if !left_out.is_empty() {
+            let (name, left_out) = (options.integrator.name, left_out.join(" and "));
+            print::warning(format_args!(
+                "integrator `{name}` leaves out {left_out}, which `--integrator path` shows"
+            ));
+        }
+        let other_structure = self.structure.is_some_and(|kind| kind != StructureKind::default());
+        match self {
+            _ if other_structure => loaded.without_instances("another structure"),
+            Self { heatmap: Some(_), .. } => loaded.without_instances("a heat map"),
+            Self { show_bounds: Some(_), .. } => loaded.without_instances("a picture of bounds"),
+            _ => Ok(loaded),
+        }
+    }
+}
+
+/// How long it took to get so far.
+#[derive(Clone, Copy)]
+struct Times {
+    load: Duration,
+    build: Duration,
+    view: Duration,
+}
+
+/// Everything that pictures of a scene need.
+struct Stage<'a> {
+    args: &'a Args,
+    options: &'a RenderOptions,
+    prepared: &'a PreparedScene<'a>,
+    kind: StructureKind,
+    /// Whether the structure was saved with the scene.
+    is_saved: bool,
+    times: Times,
+    pool: &'a ThreadPool,
+}
+
+impl Stage<'_> {
+    /// Renders a picture, writes it and says so.
+    fn shoot(
+        &self,
+        view: &View,
+        begun: Option<Begun>,
+        image: Option<ImageFile>,
+    ) -> Result<(), Failure> {
+        let &Self { args, prepared, pool, kind, .. } = self;
+        let mut options = self.options.clone();
+        options.lens = args.lens.lens(prepared, &view.camera, args.size)?;
+        options.validate().map_err(Failure::bad_input)?;
+        let (goal, aovs) = (args.sampling.goal(), args.layers.aovs());
+        let in_passes = picture::is_in_passes(&options, &goal, aovs);
+        let mut settings = Settings::of_picture(&options, &goal, in_passes);
+        let checkpoint = match begun {
+            None => None,
+            Some(begun) => {
+                let build = if self.is_saved { "saved" } else { args.build.preset().name() };
+                settings.add_scene(prepared, view, kind, build);
+                Some(begun.of_picture(settings.clone(), &options, args.work.every())?)
+            }
+        };
+        let keeps_light = image.as_ref().is_some_and(|image| image.format.holds_light);
+        let request = Request {
+            prepared,
+            view,
+            options: &options,
+            heatmap: args.heatmap,
+            heatmap_max: args.heatmap_max,
+            show_bounds: args.show_bounds,
+            exposure: args.image.exposure,
+            tone_map: args.image.tone_map(),
+            keeps_light,
+            goal,
+            aovs,
+            denoise: args.layers.denoise,
+            part: args.work.part(),
+            checkpoint: checkpoint.as_ref(),
+        };
+        let drawn = picture::draw(&request, pool)?;
+        let passes = drawn.passes.as_ref();
+        let is_cut_short = passes.is_some_and(|passes| passes.ended == Ended::Cancelled);
+        let started = Instant::now();
+        let samples = drawn.samples(options.samples);
+        let is_shown = !keeps_light && !args.is_drawn() && options.integrator.shows_light;
+        let path = image.as_ref().map(|image| image.path.clone());
+        if let Some(ImageFile { file, format, options: mut write_options, .. }) = image {
+            write_options.metadata = args.image.metadata(&Made {
+                settings: &settings,
+                samples: &samples,
+                is_denoised: passes.is_some_and(|passes| passes.is_denoised),
+                exposure: is_shown.then_some(drawn.exposure),
+                seconds: Some(drawn.render.elapsed.as_secs_f64()),
+                threads: drawn.render.threads,
+            });
+            file.write_with(|writer| {
+                let written = drawn.write(format, &write_options, writer);
+                written.map_err(|error| file.cannot_write(&error))
+            })?;
+        }
+        let write = started.elapsed();
+        let report = Report {
+            args,
+            output: path.as_deref(),
+            checkpoint: args.work.checkpoint.as_deref().filter(|_| drawn.kept.is_ok()),
+            options: &options,
+            samples: &samples,
+            passes: drawn.passes,
+            scene: prepared.scene(),
+            kind,
+            is_saved: self.is_saved,
+            structure: prepared.stats(),
+            times: self.times,
+            render: drawn.render,
+            heat: drawn.heat,
+            bounds: drawn.bounds,
+            exposure: drawn.exposure,
+            write,
+        };
+        if args.json { print::json(&report.as_json()) } else { print::result(&report.as_text()) }?;
+        drawn.kept?;
+        if is_cut_short {
+            let mut message = format!("after {samples} of {} samples per pixel", options.samples);
+            if let Some(path) = path {
+                message += &format!("; {} is what there was", path.display());
+            }
+            if let Some(checkpoint) = &args.work.checkpoint {
+                message += &format!("; --resume goes on from {}", checkpoint.display());
+            }
+            return Err(Failure::Interrupted(message));
+        }
+        Ok(())
+    }
 }

@@ -1,13 +1,14 @@
 //! What `raywood render` says it did.
 
+use std::path::Path;
 use std::time::Duration;
 
 use raywood::{StructureKind, StructureStats};
-use raywood_render::{Ended, RenderOptions, RenderStats};
+use raywood_render::{Ended, Part, RenderOptions, RenderStats};
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
-use super::Args;
+use super::{Args, Times};
 use crate::exporters;
 use crate::parse::Size;
 use crate::picture::{Bounds, Heat, Passes};
@@ -16,6 +17,10 @@ use crate::print::{thousands, threads};
 /// What was done and how long it took.
 pub(super) struct Report<'a> {
     pub(super) args: &'a Args,
+    /// The picture, if it was written.
+    pub(super) output: Option<&'a Path>,
+    /// The film, if it was kept.
+    pub(super) checkpoint: Option<&'a Path>,
     pub(super) options: &'a RenderOptions,
     /// How many samples a pixel has.
     pub(super) samples: &'a str,
@@ -25,9 +30,7 @@ pub(super) struct Report<'a> {
     /// Whether the structure was saved with the scene.
     pub(super) is_saved: bool,
     pub(super) structure: StructureStats,
-    pub(super) load: Duration,
-    pub(super) build: Duration,
-    pub(super) view: Duration,
+    pub(super) times: Times,
     pub(super) render: RenderStats,
     pub(super) heat: Option<Heat>,
     pub(super) bounds: Option<Bounds>,
@@ -39,10 +42,10 @@ impl Report<'_> {
     /// For people.
     pub(super) fn as_text(&self) -> String {
         let Self { args, scene, kind, is_saved, structure, .. } = self;
-        let Self { load, build, view, render, heat, bounds, write, .. } = self;
+        let Self { times: Times { load, build, view }, render, heat, bounds, write, .. } = self;
         let rays = render.rays;
         let seconds = |d: &Duration| format!("{:8.3} s", d.as_secs_f64());
-        let mut text = format!("wrote {}: {}\n", args.image.output.display(), self.what());
+        let mut text = format!("wrote {}: {}\n", self.written(), self.what());
         let mut line = |name: &str, value: String| text += &format!("  {name:<8}{value}\n");
 
         let spheres = match scene.spheres.as_slice().len() {
@@ -117,17 +120,34 @@ impl Report<'_> {
     /// The picture in a few words.
     fn what(&self) -> String {
         let Args { scene, size: Size { width, height }, .. } = self.args;
-        format!("{scene} at {width}x{height}, {} samples per pixel", self.samples)
+        let part = match self.args.work.part() {
+            Part::Whole => String::new(),
+            Part::Region(region) => {
+                format!(
+                    " (region of {}x{} at {},{})",
+                    region.width, region.height, region.x, region.y
+                )
+            }
+            Part::Share { index, count } => format!(" (tile {}/{count})", u64::from(index) + 1),
+        };
+        format!("{scene} at {width}x{height}{part}, {} samples per pixel", self.samples)
+    }
+
+    /// The files.
+    fn written(&self) -> String {
+        let files = [self.output, self.checkpoint].into_iter().flatten();
+        files.map(|path| path.display().to_string()).collect::<Vec<_>>().join(" and ")
     }
 
     /// For programs.
     pub(super) fn as_json(&self) -> Value {
         let Self { args, scene, kind, is_saved, structure, .. } = self;
-        let Self { load, build, view, render, heat, bounds, write, .. } = self;
+        let Self { times: Times { load, build, view }, render, heat, bounds, write, .. } = self;
         let rays = render.rays;
         json!({
             "scene": args.scene,
-            "output": args.image.output.display().to_string(),
+            "output": self.output.map(|path| path.display().to_string()),
+            "checkpoint": self.checkpoint.map(|path| path.display().to_string()),
             "width": args.size.width,
             "height": args.size.height,
             "integrator": args.integrator.name,

@@ -50,6 +50,6 @@ impl SamplingArgs {
 
     /// When the picture is done.
     pub(super) fn goal(&self) -> Goal {
-        Goal { noise: self.noise, time: self.time }
+        Goal { noise: self.noise, time: self.time, in_one_pass: false }
     }
 }

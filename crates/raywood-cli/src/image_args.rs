@@ -1,14 +1,13 @@
 //! What the picture's file is like: the options about it, checked before any work is done.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use raywood_render::{
-    Aov, IMAGE_FORMATS, ImageFormat, RenderOptions, TONE_MAPS, ToneMap, WriteOptions,
-};
+use raywood_render::{IMAGE_FORMATS, ImageFormat, TONE_MAPS, ToneMap, WriteOptions};
 
 use crate::failure::Failure;
 use crate::output_file::OutputFile;
-use crate::parse::{Aovs, Exposure, aovs, exposure, tone_map, whole_number};
+use crate::parse::{Exposure, exposure, tone_map, whole_number};
+use crate::settings::Settings;
 
 /// The options of the picture's file.
 #[derive(clap::Args)]
@@ -21,11 +20,9 @@ pub(crate) struct ImageArgs {
         short,
         long,
         value_name = "FILE",
-        default_value = "render.png",
-        hide_default_value = true,
         help_heading = None::<&'static str>
     )]
-    pub(super) output: PathBuf,
+    output: Option<PathBuf>,
 
     /// Bits a channel: PNG 8 or 16, OpenEXR 16 or 32
     ///
@@ -51,23 +48,7 @@ pub(crate) struct ImageArgs {
     ///
     /// `auto` makes the picture's log-average brightness a middle grey of 0.18. Else 0, but for integrator `path`, where the picture is darkened until nine tenths of it are not too bright.
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true, hide_short_help = true)]
-    pub(super) exposure: Option<Exposure>,
-
-    /// Layers beside the picture, for .exr: names or all
-    #[arg(
-        long,
-        value_name = "NAME,...",
-        value_parser = aovs,
-        hide_short_help = true,
-        long_help = aovs_help()
-    )]
-    aovs: Option<Aovs>,
-
-    /// Remove noise, guided by surfaces
-    ///
-    /// For integrator `path`, or with --noise or --time. Neighbours that see the same surface are averaged as far as they differ by no more than their noise, which at least 8 rays per pixel tell; textures and edges stay. An a-trous filter, no neural network: fine shadows and what mirrors and glass show is smoothed where noise hides it.
-    #[arg(long, hide_short_help = true)]
-    pub(super) denoise: bool,
+    pub(crate) exposure: Option<Exposure>,
 
     /// What the file says of how it was made
     ///
@@ -84,15 +65,6 @@ enum Metadata {
     Full,
 }
 
-/// All layers, a line each.
-fn aovs_help() -> String {
-    let line = |aov: Aov| format!("  {:<9} {}", aov.name(), aov.help());
-    format!(
-        "Layers beside the picture, for .exr: names with commas, or all\n\nFrom the rays of the picture, as channels `normal.X` and the like\n\n{}",
-        Aov::ALL.map(line).join("\n")
-    )
-}
-
 /// All ways of tone mapping, a line each.
 fn tone_maps_help() -> String {
     let line = |map: &ToneMap| format!("  {:<9} {}", map.name, map.help);
@@ -106,21 +78,40 @@ fn tone_maps_help() -> String {
 
 /// A file to write, and how.
 pub(crate) struct ImageFile {
-    pub(super) file: OutputFile,
-    pub(super) format: &'static ImageFormat,
-    pub(super) options: WriteOptions,
+    pub(crate) path: PathBuf,
+    pub(crate) file: OutputFile,
+    pub(crate) format: &'static ImageFormat,
+    pub(crate) options: WriteOptions,
 }
 
+/// What a picture is called if nobody says.
+const DEFAULT_NAME: &str = "render.png";
+
 impl ImageArgs {
+    /// Whether the picture's name was given.
+    pub(crate) fn is_named(&self) -> bool {
+        self.output.is_some()
+    }
+
+    /// Where the picture is written.
+    pub(crate) fn path(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(DEFAULT_NAME))
+    }
+
     /// The file that is written, known to be writable.
     ///
     /// # Errors
     ///
     /// No known format, options that it has no use for, or a file that cannot be written.
-    pub(super) fn file(&self, is_drawn: bool) -> Result<ImageFile, Failure> {
-        let name = self.output.display();
+    pub(crate) fn file(&self, is_drawn: bool) -> Result<ImageFile, Failure> {
+        self.file_at(self.path(), is_drawn)
+    }
+
+    /// The same of a file of another name.
+    pub(crate) fn file_at(&self, path: &Path, is_drawn: bool) -> Result<ImageFile, Failure> {
+        let name = path.display();
         let refuse = |message: String| Err(Failure::BadInput(message));
-        let Some(format) = ImageFormat::of_path(&self.output) else {
+        let Some(format) = ImageFormat::of_path(path) else {
             let names: Vec<_> = IMAGE_FORMATS.iter().map(|format| format.name).collect();
             let endings = IMAGE_FORMATS.iter().flat_map(|format| format.endings);
             let endings: Vec<_> = endings.map(|ending| format!(".{ending}")).collect();
@@ -147,9 +138,6 @@ impl ImageArgs {
             }
             options.quality = quality as u8;
         }
-        if self.aovs.is_some() && !format.has_layers {
-            return refuse(format!("{name}: {format} has no layers for --aovs: expected .exr"));
-        }
         if format.holds_light {
             if is_drawn {
                 return refuse(format!(
@@ -164,35 +152,34 @@ impl ImageArgs {
                 ));
             }
         }
-        Ok(ImageFile { file: OutputFile::new(&self.output)?, format, options })
-    }
-
-    /// The layers beside the picture.
-    pub(super) fn aovs(&self) -> &[Aov] {
-        self.aovs.as_ref().map_or(&[], |aovs| &aovs.0)
+        Ok(ImageFile { path: path.to_owned(), file: OutputFile::new(path)?, format, options })
     }
 
     /// How light is shown.
-    pub(super) fn tone_map(&self) -> &'static ToneMap {
+    pub(crate) fn tone_map(&self) -> &'static ToneMap {
         self.tone_map.unwrap_or(&TONE_MAPS[0])
     }
 
     /// What the file says of how it was made.
-    pub(super) fn metadata(&self, made: &Made<'_>) -> Vec<(String, String)> {
-        let &Made { options, samples, is_denoised, exposure, seconds, threads } = made;
+    pub(crate) fn metadata(&self, made: &Made<'_>) -> Vec<(String, String)> {
+        let &Made { settings, samples, is_denoised, exposure, seconds, threads } = made;
         let mut entries = Vec::new();
         let mut say = |name: &str, text: String| entries.push((name.to_owned(), text));
         if self.metadata == Metadata::None {
             return entries;
         }
         say("Software", concat!("raywood ", env!("CARGO_PKG_VERSION")).to_owned());
-        say("raywood:integrator", options.integrator.name.to_owned());
-        say("raywood:samples", samples.to_owned());
-        say("raywood:seed", options.seed.to_string());
-        say("raywood:filter", options.filter.name().to_owned());
-        say("raywood:depth", options.max_depth.to_string());
-        if let Some(lens) = options.lens {
-            say("raywood:lens", format!("radius {}, focus {}", lens.radius, lens.focus));
+        let setting = |option| settings.value(option).map(str::to_owned);
+        let known = [
+            ("raywood:integrator", setting("--integrator")),
+            ("raywood:samples", Some(samples.to_owned())),
+            ("raywood:seed", setting("--seed")),
+            ("raywood:filter", setting("--filter")),
+            ("raywood:depth", setting("--depth")),
+            ("raywood:lens", setting("lens")),
+        ];
+        for (name, text) in known {
+            text.into_iter().for_each(|text| say(name, text));
         }
         if is_denoised {
             say("raywood:denoised", "yes".to_owned());
@@ -204,7 +191,9 @@ impl ImageArgs {
         if self.metadata == Metadata::Full {
             let arguments = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
             say("raywood:command", arguments.collect::<Vec<_>>().join(" "));
-            say("raywood:seconds", format!("{seconds:.3}"));
+            if let Some(seconds) = seconds {
+                say("raywood:seconds", format!("{seconds:.3}"));
+            }
             say("raywood:threads", threads.to_string());
         }
         entries
@@ -213,14 +202,16 @@ impl ImageArgs {
 
 /// How a picture was made.
 #[derive(Clone, Copy)]
-pub(super) struct Made<'a> {
-    pub(super) options: &'a RenderOptions,
+pub(crate) struct Made<'a> {
+    /// What it is of.
+    pub(crate) settings: &'a Settings,
     /// How many samples a pixel has.
-    pub(super) samples: &'a str,
+    pub(crate) samples: &'a str,
     /// Whether noise was removed.
-    pub(super) is_denoised: bool,
+    pub(crate) is_denoised: bool,
     /// How much of the light is shown; of files that hold light nothing else is known.
-    pub(super) exposure: Option<f32>,
-    pub(super) seconds: f64,
-    pub(super) threads: usize,
+    pub(crate) exposure: Option<f32>,
+    /// How long the rendering took, if it was one.
+    pub(crate) seconds: Option<f64>,
+    pub(crate) threads: usize,
 }
