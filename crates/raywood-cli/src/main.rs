@@ -20,6 +20,7 @@ mod settings;
 mod simd_args;
 mod surroundings;
 mod view_args;
+mod watch;
 
 use std::process::ExitCode;
 

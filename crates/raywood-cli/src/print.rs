@@ -26,6 +26,11 @@ pub(crate) fn warning(text: impl Display) {
     say("warning", &text);
 }
 
+/// Says what happens.
+pub(crate) fn note(text: impl Display) {
+    say("note", &text);
+}
+
 /// Says why the command ends.
 pub(crate) fn failure(failure: &Failure) {
     let kind = if matches!(failure, Failure::Interrupted(_)) { "stopped" } else { "error" };

@@ -303,3 +303,63 @@ fn what_is_missing_or_unlike_is_not_merged() {
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
     }
 }
+
+/// A command that is killed when the test ends, however it does.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn watching_renders_again_and_survives_half_written_files() {
+    let folder = folder("watch");
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("a file");
+    let scene =
+        "[[model]]\nfile = \"part.toml\"\n[[camera]]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";
+    let part = |radius: f32| {
+        let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nmaterial = { color = 0.8 }\n";
+        write("part.toml", &format!("{sphere}radius = {radius}\n"));
+    };
+    write("scene.toml", scene);
+    part(1.0);
+
+    let said = fs::File::create(folder.join("said")).expect("a file");
+    let command = "render scene.toml --watch --size 40x25 -o a.png";
+    let child = raywood(&folder)
+        .args(command.split_whitespace())
+        .stdout(Stdio::null())
+        .stderr(said)
+        .spawn()
+        .expect("the command starts");
+    let _running = Running(child);
+    let said = || fs::read_to_string(folder.join("said")).expect("text");
+    let rounds = |count: usize| {
+        wait_for("the picture", || {
+            said().matches("watching 2 files, Ctrl-C ends").count() == count
+        });
+    };
+    rounds(1);
+    let first = bytes(&folder, "a.png");
+
+    // A file that the scene names.
+    part(0.5);
+    rounds(2);
+    let second = bytes(&folder, "a.png");
+    assert!(first != second);
+
+    // Half a file, which is said; the picture stays.
+    write("scene.toml", &scene[..30]);
+    rounds(3);
+    assert!(said().contains("error: scene.toml:3:2: "), "{}", said());
+    assert!(bytes(&folder, "a.png") == second);
+
+    // And all is well again.
+    part(1.0);
+    write("scene.toml", scene);
+    rounds(4);
+    assert!(bytes(&folder, "a.png") == first);
+}

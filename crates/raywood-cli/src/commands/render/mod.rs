@@ -6,6 +6,7 @@ mod report;
 mod sampling_args;
 mod work_args;
 
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -13,6 +14,7 @@ use raywood::StructureKind;
 use raywood_render::{
     Ended, HeatQuantity, INTEGRATORS, Integrator, Part, PreparedScene, RenderOptions, View,
 };
+use raywood_scene::{FileStamp, files_read};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
@@ -23,11 +25,12 @@ use crate::parse::{Size, above_zero, heat_quantity, integrator, structure_kind};
 use crate::picture::{self, Request};
 use crate::print;
 use crate::progress_bar::during_step;
-use crate::scene_source::{self, Loaded};
+use crate::scene_source::{self, BUILTIN_PREFIX, Loaded};
 use crate::settings::Settings;
 use crate::simd_args::SimdArgs;
 use crate::surroundings::Surroundings;
 use crate::view_args::ViewArgs;
+use crate::watch::wait_for_change;
 use layer_args::LayerArgs;
 use lens_args::LensArgs;
 use report::Report;
@@ -95,6 +98,70 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     work: WorkArgs,
+
+    /// Render again whenever the scene's files change
+    ///
+    /// The scene file or model, and all files that it names. What is wrong with them is said, and watching goes on. Ctrl-C ends it.
+    #[arg(
+        help_heading = "Long work",
+        long,
+        conflicts_with = "checkpoint",
+        hide_short_help = true
+    )]
+    watch: bool,
+
+    #[command(flatten)]
+    view: ViewArgs,
+
+    /// Panorama around the scene (.hdr or .exr), a sky, or none
+    ///
+    /// A Radiance or OpenEXR picture of the surroundings, by longitude and latitude, in place of the scene's background; `none` leaves black. Integrator `path` lights the scene by it. `sky` is a clear sky by formula, whose sun takes the place of
+    /// the scene's lights: `sky:elevation=35,azimuth=130,turbidity=2.2`, degrees above the horizon and clockwise from the default view's direction, and how hazy the air is, from 1 to 10.
+    #[arg(
+        help_heading = "View and light",
+        long,
+        value_name = "FILE|sky|none",
+        hide_short_help = true
+    )]
+    environment: Option<Surroundings>,
+
+    #[command(flatten)]
+    lens: LensArgs,
+
+    /// Acceleration structure to trace with
+    ///
+    /// The picture is the same with each but for last digits, which show in single pixels; times and memory differ. A wrong name is answered with those that exist.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "NAME", value_parser = structure_kind)]
+    structure: Option<StructureKind>,
+
+    #[command(flatten)]
+    build: BuildArgs,
+
+    #[command(flatten)]
+    simd: SimdArgs,
+
+    /// Show the structure's work for each pixel
+    ///
+    /// Instead of the scene: `nodes` (nodes or cells entered), `boxes` (box tests), `primitives` (primitive tests) or `tests` (both), the mean over the pixel's rays from the eye. A strip with a legend is added below the picture.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "QUANTITY", value_parser = heat_quantity)]
+    heatmap: Option<HeatQuantity>,
+
+    /// Where the scale of the heat map ends
+    ///
+    /// To compare several maps. Else it ends where 99.5% of the pixels lie below, rounded up; the legend then has `>=` before its last number if some lie above.
+    #[arg(help_heading = "Acceleration structure", long, value_name = "N", value_parser = above_zero, requires = "heatmap", hide_short_help = true)]
+    heatmap_max: Option<f32>,
+
+    /// Draw the structure's boxes of a level
+    ///
+    /// The root's level is 0; `raywood info --json` lists the levels. Drawn are the boxes or cells of the level and the leaves above it, over the picture or the heat map, but no leaves without primitives. Lines behind surfaces are fainter.
+    #[arg(
+        help_heading = "Acceleration structure",
+        long,
+        value_name = "LEVEL",
+        hide_short_help = true
+    )]
+    show_bounds: Option<usize>,
 }
 
 /// So many samples, in two passes, tell how noisy a picture is.
@@ -110,7 +177,43 @@ fn integrators_help() -> String {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.simd.activate()?;
     let pool = thread_pool(args.threads.map(usize::from))?;
-    render(args, &pool)
+    if args.watch { watch(args, &pool) } else { render(args, &pool) }
+}
+
+/// Renders again and again, whenever a file of the scene changes.
+fn watch(args: &Args, pool: &ThreadPool) -> Result<(), Failure> {
+    if args.scene.starts_with(BUILTIN_PREFIX) {
+        return Err(Failure::BadInput(format!(
+            "--watch: {} does not change, expected a file",
+            args.scene
+        )));
+    }
+    // What is wrong with the request will not get better.
+    args.options()?;
+    args.image_file()?;
+    let mut files: Vec<(PathBuf, FileStamp)> = Vec::new();
+    loop {
+        let (result, mut read) = files_read(|| render(args, pool));
+        read.push((args.scene.clone().into(), FileStamp::of(Path::new(&args.scene))));
+        match result {
+            Ok(()) => files.clear(),
+            Err(failure @ Failure::Interrupted(_)) => return Err(failure),
+            Err(failure) => print::failure(&failure),
+        }
+        // A scene that could not be loaded did not come to all of its files: those of before count, as they are now.
+        for (path, _) in std::mem::take(&mut files) {
+            let stamp = FileStamp::of(&path);
+            read.push((path, stamp));
+        }
+        for (path, stamp) in read {
+            if !files.iter().any(|(other, _)| *other == path) {
+                files.push((path, stamp));
+            }
+        }
+        let count = if files.len() == 1 { "file" } else { "files" };
+        print::note(format_args!("watching {} {count}, Ctrl-C ends", files.len()));
+        wait_for_change(&files);
+    }
 }
 
 /// Loads the scene and renders all that is asked for.
