@@ -275,6 +275,14 @@ pub(crate) fn above_zero(text: &str) -> Result<f32, String> {
     }
 }
 
+/// An angle in degrees.
+pub(crate) fn degrees(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(degrees) if degrees.abs() <= 1e6 => Ok(degrees),
+        _ => Err("expected degrees, as in 360 or -90".to_owned()),
+    }
+}
+
 /// A vertical field of view in degrees, between 0 and 180.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
@@ -315,6 +323,8 @@ mod tests {
         for bad in ["0", "10", "1e6", "-1", "", "99999999999999999999"] {
             assert_eq!(whole_number(bad, 1, 9), Err("expected a whole number from 1 to 9".into()));
         }
+        assert_eq!((degrees("-90"), degrees("720")), (Ok(-90.0), Ok(720.0)));
+        assert!(["", "nan", "inf", "1e9", "round"].iter().all(|bad| degrees(bad).is_err()));
         assert_eq!(field_of_view("35"), Ok(35.0));
         assert!(["0", "180", "nan", "-5", "wide"].iter().all(|bad| field_of_view(bad).is_err()));
         assert_eq!(above_zero("0.5"), Ok(0.5));

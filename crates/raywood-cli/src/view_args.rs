@@ -52,8 +52,8 @@ impl ViewArgs {
         scene.up = self.up.map(|point| point.0).or(scene.up);
     }
 
-    /// The camera and lights: those of the options, else the scene's, else chosen ones; lights for the camera that is used. `others` take the place of the scene's. `aspect` is the
-    /// picture's width over its height.
+    /// The camera and lights: those of the options, else the scene's, else chosen ones; lights for the camera that is used. `first_key` is the scene's camera to use if the options do not say. `others`
+    /// take the place of the scene's lights. `aspect` is the picture's width over its height.
     ///
     /// # Errors
     ///
@@ -62,10 +62,11 @@ impl ViewArgs {
         &self,
         prepared: &PreparedScene<'_>,
         aspect: f32,
+        first_key: Option<&str>,
         others: Option<Vec<Light>>,
     ) -> Result<View, Failure> {
         let scene = prepared.scene();
-        let mut camera = match (&self.camera, scene.cameras.first()) {
+        let mut camera = match (self.camera.as_deref().or(first_key), scene.cameras.first()) {
             (Some(wanted), _) => camera_called(wanted, scene)?,
             (None, Some(first)) => first.clone(),
             (None, None) => choose_camera(prepared, aspect),
@@ -103,7 +104,11 @@ fn point_light(light: &PointLight, camera: &Camera) -> Light {
 }
 
 /// The scene's camera of a number, from 1, or a name.
-fn camera_called(wanted: &str, scene: &Scene) -> Result<Camera, Failure> {
+///
+/// # Errors
+///
+/// It has none.
+pub(crate) fn camera_called(wanted: &str, scene: &Scene) -> Result<Camera, Failure> {
     let number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let by_number = number.and_then(|index| scene.cameras.get(index));
     let camera = by_number.or_else(|| scene.cameras.iter().find(|camera| camera.name == wanted));

@@ -363,3 +363,73 @@ fn watching_renders_again_and_survives_half_written_files() {
     rounds(4);
     assert!(bytes(&folder, "a.png") == first);
 }
+
+#[test]
+fn frames_are_pictures_of_a_camera_that_moves() {
+    let folder = folder("frames");
+    let simple = "builtin:whitted --size 48x30 -n 1 -i path";
+    assert_done(&run(&folder, &format!("render {simple} --frames 4 -o turn_%02d.png")));
+    let turn: Vec<_> = (1..=4).map(|n| bytes(&folder, &format!("turn_0{n}.png"))).collect();
+    assert!((1..4).all(|i| turn[i] != turn[i - 1]));
+    // The first is what is rendered without frames; half a turn is half a turn, either way round.
+    assert_done(&run(&folder, &format!("render {simple} -o one.png")));
+    assert!(bytes(&folder, "one.png") == turn[0]);
+    assert_done(&run(&folder, &format!("render {simple} --frames 2 --turn -360 -o b.png")));
+    assert!(bytes(&folder, "b_0001.png") == turn[0]);
+
+    // What is there is left out, and only if that is asked for.
+    fs::write(folder.join("turn_02.png"), "mine").expect("a file");
+    fs::remove_file(folder.join("turn_03.png")).expect("a file");
+    let go_on = format!("render {simple} --frames 4 -o turn_%02d.png --skip-existing");
+    assert_done(&run(&folder, &go_on));
+    assert!(bytes(&folder, "turn_02.png") == b"mine" && bytes(&folder, "turn_03.png") == turn[2]);
+    assert_done(&run(&folder, &format!("render {simple} --frames 4 -o turn_%02d.png")));
+    assert!(bytes(&folder, "turn_02.png") == turn[1]);
+}
+
+#[test]
+fn cameras_of_a_scene_are_the_keys_of_a_way() {
+    let folder = folder("way");
+    let camera = |name: &str, eye: [f32; 3]| {
+        format!("[[camera]]\nname = \"{name}\"\neye = {eye:?}\ntarget = [0, 0, 0]\n")
+    };
+    let text = [
+        "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = { color = 0.8, pattern = { kind = \"checker\", color = 0.1, size = 0.5 } }\n".to_owned(),
+        "[[light]]\nkind = \"directional\"\ndirection = [-1, -2, -1]\nintensity = 1\n".to_owned(),
+        camera("front", [0.0, 0.0, 5.0]),
+        camera("side", [5.0, 1.0, 0.0]),
+        camera("back", [0.0, 0.0, -6.0]),
+    ];
+    fs::write(folder.join("a.toml"), text.concat()).expect("a file");
+    let simple = "render a.toml --size 40x25";
+    assert_done(&run(&folder, &format!("{simple} --frames 5 --through all -o way.png")));
+    assert_done(&run(&folder, &format!("{simple} --frames 3 --through 3,front -o back.png")));
+    for (camera, frame) in [("front", "way_0001"), ("2", "way_0003"), ("back", "way_0005")] {
+        assert_done(&run(&folder, &format!("{simple} --camera {camera} -o key.png")));
+        assert!(bytes(&folder, "key.png") == bytes(&folder, &format!("{frame}.png")), "{camera}");
+    }
+    assert!(bytes(&folder, "way_0002.png") != bytes(&folder, "way_0001.png"));
+    assert!(bytes(&folder, "back_0003.png") == bytes(&folder, "way_0001.png"));
+
+    for (options, expected) in [
+        (
+            "--frames 2 --through front,left",
+            "a.toml: has no camera `left`; its cameras: 1 front, 2 side, 3 back",
+        ),
+        ("--frames 0", "--frames"),
+        (
+            "--frames 2 -o a%s.png",
+            "a%s.png: expected one number of the frame in the name, as %d or %04d",
+        ),
+        ("--frames 2 --exposure auto", "--exposure auto would flicker"),
+        ("--through all", "--frames <N>"),
+        ("--frames 2 --checkpoint a.film", "cannot be used with"),
+        ("--frames 2 --watch", "cannot be used with"),
+    ] {
+        let output = run(&folder, &format!("{simple} {options}"));
+        assert_eq!(code(&output), 2, "{options}");
+        assert!(stderr(&output).contains(expected), "{options}: {}", stderr(&output));
+    }
+    let output = run(&folder, "render builtin:whitted --watch");
+    assert!(stderr(&output).contains("--watch: builtin:whitted does not change, expected a file"));
+}

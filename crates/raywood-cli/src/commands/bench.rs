@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut prepared = args.build.prepare(&scene, tree.as_ref(), kind, &pool)?;
     let build = (started.elapsed().as_secs_f64(), pool.current_num_threads());
 
-    let choose = || args.view.view(&prepared, width as f32 / height as f32, None);
+    let choose = || args.view.view(&prepared, width as f32 / height as f32, None, None);
     let view = during_step("choosing a view", || pool.install(choose))?;
     // The benchmark has threads of its own.
     drop(pool);

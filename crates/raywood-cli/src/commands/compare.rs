@@ -102,7 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     args.view.orient(&mut scene);
 
     let prepared = args.build.prepare(&scene, tree.as_ref(), StructureKind::default(), &pool)?;
-    let choose = || args.view.view(&prepared, options.aspect, None);
+    let choose = || args.view.view(&prepared, options.aspect, None, None);
     let view = during_step("choosing a view", || pool.install(choose))?;
     let comparison =
         during_steps(|step| pool.install(|| compare(&prepared, &view, &options, step)));

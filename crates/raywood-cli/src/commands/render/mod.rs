@@ -1,5 +1,6 @@
 //! `raywood render`: a scene in, a picture out.
 
+mod animation_args;
 mod layer_args;
 mod lens_args;
 mod report;
@@ -14,14 +15,14 @@ use raywood::StructureKind;
 use raywood_render::{
     Ended, HeatQuantity, INTEGRATORS, Integrator, Part, PreparedScene, RenderOptions, View,
 };
-use raywood_scene::{FileStamp, files_read};
+use raywood_scene::{Camera, FileStamp, files_read};
 
 use super::thread_pool;
 use crate::build_args::BuildArgs;
 use crate::checkpoint::Begun;
 use crate::failure::Failure;
 use crate::image_args::{ImageArgs, ImageFile, Made};
-use crate::parse::{Size, above_zero, heat_quantity, integrator, structure_kind};
+use crate::parse::{Exposure, Size, above_zero, heat_quantity, integrator, structure_kind};
 use crate::picture::{self, Request};
 use crate::print;
 use crate::progress_bar::during_step;
@@ -31,6 +32,7 @@ use crate::simd_args::SimdArgs;
 use crate::surroundings::Surroundings;
 use crate::view_args::ViewArgs;
 use crate::watch::wait_for_change;
+use animation_args::{AnimationArgs, frame_path};
 use layer_args::LayerArgs;
 use lens_args::LensArgs;
 use report::Report;
@@ -105,10 +107,13 @@ pub(crate) struct Args {
     #[arg(
         help_heading = "Long work",
         long,
-        conflicts_with = "checkpoint",
+        conflicts_with_all = ["checkpoint", "frames"],
         hide_short_help = true
     )]
     watch: bool,
+
+    #[command(flatten)]
+    animation: AnimationArgs,
 
     #[command(flatten)]
     view: ViewArgs,
@@ -238,15 +243,25 @@ fn render(args: &Args, pool: &ThreadPool) -> Result<(), Failure> {
 
     let started = Instant::now();
     let aspect = args.size.width as f32 / args.size.height as f32;
-    let choose = || args.view.view(&prepared, aspect, sky_lights);
+    let choose = || args.view.view(&prepared, aspect, args.animation.first_key(), sky_lights);
     let view = during_step("choosing a view", || pool.install(choose))?;
     let chosen = started.elapsed();
 
     let is_saved = args.build.wanted(tree.as_ref(), kind).is_some();
     let times = Times { load, build, view: chosen };
     let (prepared, options) = (&prepared, &options);
-    let stage = Stage { args, options, prepared, kind, is_saved, times, pool };
-    stage.shoot(&view, begun, image)
+    let mut stage = Stage { args, options, prepared, kind, is_saved, times, pool, exposure: None };
+    let up = prepared.axes().up;
+    match args.animation.cameras(&scene, &view.camera, up)? {
+        None => stage.shoot(&view, begun, image),
+        Some(cameras) => {
+            if args.image.exposure.is_none() {
+                let exposure = picture::find_exposure(prepared, &view, options, pool)?;
+                stage.exposure = Some(Exposure::Factor(exposure));
+            }
+            stage.shoot_frames(cameras, &view)
+        }
+    }
 }
 
 impl Args {
@@ -272,6 +287,12 @@ impl Args {
         if self.is_drawn() && (part != Part::Whole || self.work.checkpoint.is_some()) {
             return Err(Failure::BadInput(
                 "--checkpoint, --region and --tile are for light: heat maps and bounds are drawn at once, expected neither".to_owned(),
+            ));
+        }
+        if self.animation.frames.is_some() && self.image.exposure == Some(Exposure::Auto) {
+            return Err(Failure::BadInput(
+                "--exposure auto would flicker from frame to frame: expected stops with --frames"
+                    .to_owned(),
             ));
         }
         if self.layers.denoise {
@@ -306,7 +327,11 @@ impl Args {
                 )),
             };
         }
-        let file = self.image.file(self.is_drawn())?;
+        let file = match self.animation.frames {
+            // The first frame stands for all.
+            Some(_) => self.image.file_at(&frame_path(self.image.path(), 1)?, self.is_drawn())?,
+            None => self.image.file(self.is_drawn())?,
+        };
         self.layers.check(&file)?;
         if self.work.checkpoint.as_deref() == Some(&file.path) {
             let name = file.path.display();
@@ -357,9 +382,32 @@ struct Stage<'a> {
     is_saved: bool,
     times: Times,
     pool: &'a ThreadPool,
+    /// How much of the light is shown, if the options do not say but something else does.
+    exposure: Option<Exposure>,
 }
 
 impl Stage<'_> {
+    /// Renders pictures with these cameras and the lights of a view.
+    fn shoot_frames(&self, cameras: Vec<Camera>, view: &View) -> Result<(), Failure> {
+        let args = self.args;
+        let count = cameras.len();
+        for (number, camera) in (1..).zip(cameras) {
+            let path = frame_path(args.image.path(), number)?;
+            if args.animation.skip_existing && path.exists() {
+                continue;
+            }
+            let image = args.image.file_at(&path, args.is_drawn())?;
+            let view = View { camera, lights: view.lights.clone() };
+            self.shoot(&view, None, Some(image)).map_err(|failure| match failure {
+                Failure::Interrupted(_) => Failure::Interrupted(format!(
+                    "in frame {number} of {count}, which is not written; --skip-existing goes on with it"
+                )),
+                failure => failure,
+            })?;
+        }
+        Ok(())
+    }
+
     /// Renders a picture, writes it and says so.
     fn shoot(
         &self,
@@ -390,7 +438,7 @@ impl Stage<'_> {
             heatmap: args.heatmap,
             heatmap_max: args.heatmap_max,
             show_bounds: args.show_bounds,
-            exposure: args.image.exposure,
+            exposure: args.image.exposure.or(self.exposure),
             tone_map: args.image.tone_map(),
             keeps_light,
             goal,
@@ -402,6 +450,11 @@ impl Stage<'_> {
         let drawn = picture::draw(&request, pool)?;
         let passes = drawn.passes.as_ref();
         let is_cut_short = passes.is_some_and(|passes| passes.ended == Ended::Cancelled);
+        if is_cut_short && args.animation.frames.is_some() {
+            // Files of frames are whole, so that those that are there can be left out later.
+            return Err(Failure::Interrupted(String::new()));
+        }
+
         let started = Instant::now();
         let samples = drawn.samples(options.samples);
         let is_shown = !keeps_light && !args.is_drawn() && options.integrator.shows_light;
