@@ -1,5 +1,5 @@
 //! Test helpers of the workspace: a brute-force oracle in double precision, one in integers for rays of double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
-//! pseudo-random numbers, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
+//! pseudo-random numbers, means told apart from noise, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
 
 pub mod closed;
 pub mod distance;
@@ -14,6 +14,7 @@ pub mod rays;
 mod rng;
 pub mod saved;
 pub mod shapes;
+pub mod significance;
 pub mod solids;
 
 pub use rng::Rng;
