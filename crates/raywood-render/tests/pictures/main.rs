@@ -7,6 +7,7 @@ mod first_hits;
 mod heat_map;
 mod image_files;
 mod instances;
+mod mitsuba;
 mod optics;
 mod path;
 mod references;
