@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::files_read;
+
 /// Where a file named in a model is: as named, else with the strokes of Windows turned, else right beside the model; else in any of these places with letters of
 /// other case.
 pub(crate) fn find(folder: &Path, name: &[u8]) -> Option<PathBuf> {
@@ -11,7 +13,13 @@ pub(crate) fn find(folder: &Path, name: &[u8]) -> Option<PathBuf> {
     let bare = turned.rsplit('/').next().unwrap_or_default();
     let spellings = [name, &turned, bare];
     let exactly = spellings.iter().map(|name| folder.join(name)).find(|path| path.is_file());
-    exactly.or_else(|| [&*turned, bare].iter().find_map(|name| find_in_any_case(folder, name)))
+    let found =
+        exactly.or_else(|| [&*turned, bare].iter().find_map(|name| find_in_any_case(folder, name)));
+    if found.is_none() {
+        // Who watches the scene's files waits for it.
+        files_read::note(&folder.join(&turned));
+    }
+    found
 }
 
 /// A file whose name differs by the case of letters alone, that of its folders as well; of several the first in order.

@@ -10,6 +10,7 @@ use gltf_json::Root;
 
 use super::document::Document;
 use crate::error::{LoadError, Place, quoted};
+use crate::files_read;
 use crate::formats::Input;
 use crate::formats::notes::Notes;
 use crate::load::read_file;
@@ -155,6 +156,7 @@ fn file_beside(path: &Path, uri: &str) -> Result<PathBuf, String> {
     let decoded = folder.join(&name);
     let file = if decoded.exists() { decoded } else { folder.join(uri) };
     if !file.exists() {
+        files_read::note(&file);
         return Err(format!("names the file {shown}, which is not there"));
     }
     Ok(file)
