@@ -30,6 +30,9 @@ impl Begun {
     pub(crate) fn new(path: &Path, resume: bool) -> Result<Self, Failure> {
         let name = path.display();
         let exists = path.exists();
+        if path.is_dir() {
+            return Err(Failure::BadInput(format!("{name}: is a folder, expected a file")));
+        }
         if exists && !resume {
             return Err(Failure::BadInput(format!(
                 "{name}: is there already: expected --resume to go on with it, or another name"

@@ -1,7 +1,10 @@
-//! Ctrl-C: clean up and end at once, with exit code 130; or, where something can be kept, ask for an end first.
+//! Ctrl-C, and what else asks a program to end (the signals TERM and HUP): clean up and end at once, with exit code 130; or, where something can be kept, ask for an end first.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::failure::Failure;
+use crate::print;
 
 /// The exit code of a program that Ctrl-C stopped, by convention 128 plus the signal's number.
 pub(crate) const EXIT_CODE: u8 = 130;
@@ -25,6 +28,8 @@ pub(crate) fn install() {
         if let Some(path) = unfinished.as_deref() {
             let _ = std::fs::remove_file(path);
         }
+        let lost = "at once: what is not written yet is lost";
+        print::failure(&Failure::Interrupted(lost.to_owned()));
         std::process::exit(EXIT_CODE.into());
     });
     // Without a handler Ctrl-C still ends the program, only less tidily.

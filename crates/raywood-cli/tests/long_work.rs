@@ -81,15 +81,16 @@ fn what_is_killed_goes_on_to_the_same_bytes() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_a_film_even_before_there_is_a_picture() {
+fn what_is_asked_to_end_keeps_a_film_even_before_there_is_a_picture() {
     let folder = folder("ctrl-c-film");
     // Whitted's pixels have all samples or none.
-    for (options, expected) in [
+    for (signal, options, expected) in [
         (
+            "-INT",
             "-i whitted -n 5000",
             "before there was a picture; a.film has what was done, --resume goes on",
         ),
-        ("-i path -n 60000", "b.png is what there was; --resume goes on from a.film"),
+        ("-TERM", "-i path -n 60000", "b.png is what there was; --resume goes on from a.film"),
     ] {
         let command = format!("render {SMALL} {options} --checkpoint a.film -o b.png");
         let child = raywood(&folder)
@@ -106,7 +107,7 @@ fn ctrl_c_keeps_a_film_even_before_there_is_a_picture() {
                     .is_ok_and(|file| file.film.samples().0 > 0)
             });
         }
-        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let kill = Command::new("kill").args([signal, &child.id().to_string()]).status();
         assert!(kill.expect("kill starts").success());
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(code(&output), 130);
@@ -172,6 +173,18 @@ fn films_of_other_seeds_add_up() {
         bytes(&folder, "a.film") == bytes(&folder, "b.film"),
         "in any order, twice counts once"
     );
+
+    // What was merged has samples of several seeds, which must not be added again.
+    for (films, expected) in [
+        ("a.film 2.film", "2.film: has samples of seed 2, and a.film of seed 1, 2, 3"),
+        ("3.film a.film", "a.film: has samples of seed 1, 2, 3, and 3.film of seed 3"),
+    ] {
+        let output = run(&folder, &format!("merge {films} -o c.film"));
+        assert_eq!(code(&output), 2);
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+    assert_done(&run(&folder, "merge a.film b.film -o c.film"));
+    assert!(bytes(&folder, "a.film") == bytes(&folder, "c.film"));
 }
 
 #[test]
@@ -209,7 +222,10 @@ fn films_of_something_else_are_refused_by_what_differs() {
             resume.replace("builtin:whitted", "builtin:sphereflake"),
             "the scene's spheres are others",
         ),
-        (format!("{resume} --heatmap tests"), "--checkpoint, --region and --tile are for light"),
+        (
+            format!("{resume} --heatmap tests"),
+            "heat maps and bounds are drawn at once, expected neither",
+        ),
         (format!("{resume} -o a.film"), "a.film: pictures are written as"),
         (format!("{simple} --resume"), "--checkpoint <FILE>"),
         (format!("{simple} --tile 1/2"), "--checkpoint <FILE>"),
@@ -338,9 +354,7 @@ fn watching_renders_again_and_survives_half_written_files() {
     let _running = Running(child);
     let said = || fs::read_to_string(folder.join("said")).expect("text");
     let rounds = |count: usize| {
-        wait_for("the picture", || {
-            said().matches("watching 2 files, Ctrl-C ends").count() == count
-        });
+        wait_for("the picture", || said().matches("files, Ctrl-C ends").count() == count);
     };
     rounds(1);
     let first = bytes(&folder, "a.png");
@@ -362,6 +376,18 @@ fn watching_renders_again_and_survives_half_written_files() {
     write("scene.toml", scene);
     rounds(4);
     assert!(bytes(&folder, "a.png") == first);
+
+    // A file that is not there yet is waited for.
+    write("scene.toml", &scene.replace("part.toml", "other.toml"));
+    rounds(5);
+    assert!(said().contains("no such file: `other.toml`"), "{}", said());
+    fs::copy(folder.join("part.toml"), folder.join("other.toml")).expect("a file");
+    rounds(6);
+    assert!(bytes(&folder, "a.png") == first);
+
+    let output = run(&folder, "render nowhere.toml --watch");
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("nowhere.toml: no such file"), "{}", stderr(&output));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use crate::settings::{Settings, Weight};
 /// Put films of one picture together: shares, regions, seeds.
 ///
 /// Films are what `raywood render --checkpoint` writes, on one machine or many. Those of the same seed complete each other: tiles that several have count once, of the one that has more samples. Those of other seeds (`--seed`) add
-/// up to less noise. The picture is the same, bit for bit, as one rendered whole. With `-o NAME.film` they become one film, from which `raywood render --checkpoint NAME.film --resume` goes on.
+/// up to less noise. The picture is the same, bit for bit, as one rendered whole. With `-o NAME.film` they become one film. If it is of a single seed, `raywood render --checkpoint NAME.film --resume` goes on with it: to finish it, or for --denoise and --aovs.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Films to put together
@@ -120,6 +120,11 @@ impl<'a> Source<'a> {
         self.settings.value(SEED).unwrap_or_default()
     }
 
+    /// The seeds, of which a merged film has several.
+    fn seeds(&self) -> impl Iterator<Item = &str> {
+        self.seed().split(", ")
+    }
+
     /// Refuses a film of another picture than another one, and says if only last digits differ.
     fn compare(&self, other: &Self) -> Result<(), Failure> {
         let name = self.path.display();
@@ -175,6 +180,21 @@ fn merge(args: &Args) -> Result<FilmFile<'static>, Failure> {
                 other.film.film.to_mut().unite(&source.film.film);
                 other.film.is_finished &= source.film.is_finished;
             }
+        }
+    }
+
+    // What was merged before may have seeds that others have, too.
+    for (number, source) in of_seeds.iter().enumerate() {
+        let shared = |other: &&Source<'_>| {
+            source.seeds().any(|seed| other.seeds().any(|others| others == seed))
+        };
+        if let Some(other) = of_seeds[..number].iter().find(shared) {
+            let [name, other_name] = [source, other].map(|source| source.path.display());
+            return Err(Failure::BadInput(format!(
+                "{name}: has samples of seed {}, and {other_name} of seed {}: some would count twice, expected films of other seeds, or those that were merged instead of what they became",
+                source.seed(),
+                other.seed()
+            )));
         }
     }
 

@@ -85,7 +85,7 @@ pub(crate) struct Args {
     #[arg(long, hide_short_help = true)]
     strict: bool,
 
-    /// Print the statistics as JSON
+    /// Print the statistics as JSON, an object for each picture
     #[arg(long, hide_short_help = true)]
     json: bool,
 
@@ -103,7 +103,7 @@ pub(crate) struct Args {
 
     /// Render again whenever the scene's files change
     ///
-    /// The scene file or model, and all files that it names. What is wrong with them is said, and watching goes on. Ctrl-C ends it.
+    /// The scene file or model, and all files that it names, be they there or not. What is wrong with them is said, and watching goes on. What changes while a picture is rendered is seen when that is done. Ctrl-C ends it.
     #[arg(
         help_heading = "Long work",
         long,
@@ -196,6 +196,9 @@ fn watch(args: &Args, pool: &ThreadPool) -> Result<(), Failure> {
     // What is wrong with the request will not get better.
     args.options()?;
     args.image_file()?;
+    if !Path::new(&args.scene).exists() {
+        return render(args, pool);
+    }
     let mut files: Vec<(PathBuf, FileStamp)> = Vec::new();
     loop {
         let (result, mut read) = files_read(|| render(args, pool));
@@ -286,7 +289,7 @@ impl Args {
         part.validate(width, height).map_err(Failure::bad_input)?;
         if self.is_drawn() && (part != Part::Whole || self.work.checkpoint.is_some()) {
             return Err(Failure::BadInput(
-                "--checkpoint, --region and --tile are for light: heat maps and bounds are drawn at once, expected neither".to_owned(),
+                "--checkpoint, --region and --tile: heat maps and bounds are drawn at once, expected neither --heatmap nor --show-bounds".to_owned(),
             ));
         }
         if self.animation.frames.is_some() && self.image.exposure == Some(Exposure::Auto) {
@@ -298,7 +301,7 @@ impl Args {
         if self.layers.denoise {
             if part != Part::Whole {
                 return Err(Failure::BadInput(
-                    "--denoise: needs the whole picture: expected neither --region nor --tile, but of shares that were merged --checkpoint with --resume".to_owned(),
+                    "--denoise: needs the whole picture: expected neither --region nor --tile. Of shares, merge the films first, then --checkpoint MERGED.film --resume --denoise".to_owned(),
                 ));
             }
             let is_in_passes = self.integrator.name == "path"
@@ -391,9 +394,11 @@ impl Stage<'_> {
     fn shoot_frames(&self, cameras: Vec<Camera>, view: &View) -> Result<(), Failure> {
         let args = self.args;
         let count = cameras.len();
+        let mut left_out = 0;
         for (number, camera) in (1..).zip(cameras) {
             let path = frame_path(args.image.path(), number)?;
             if args.animation.skip_existing && path.exists() {
+                left_out += 1;
                 continue;
             }
             let image = args.image.file_at(&path, args.is_drawn())?;
@@ -404,6 +409,9 @@ impl Stage<'_> {
                 )),
                 failure => failure,
             })?;
+        }
+        if left_out > 0 {
+            print::note(format_args!("{left_out} of {count} frames were there already"));
         }
         Ok(())
     }

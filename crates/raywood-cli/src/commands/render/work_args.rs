@@ -15,13 +15,13 @@ use crate::parse::{Share, duration, region};
 pub(crate) struct WorkArgs {
     /// Keep what is done, for --resume and merge
     ///
-    /// A film: the sums of all samples, and what they are of. It is written every minute, at the end and on Ctrl-C, each time as a whole, so that whatever breaks the work off leaves the last one. `raywood merge` puts films together.
+    /// A film: the sums of all samples, and what they are of. It is written every minute, at the end and on Ctrl-C (or the signals TERM and HUP), each time as a whole, so that whatever breaks the work off leaves the last one. `raywood merge` puts films together.
     #[arg(long, value_name = "FILE", help_heading = None::<&'static str>)]
     pub(super) checkpoint: Option<PathBuf>,
 
     /// Go on with the checkpoint, to the same picture
     ///
-    /// The same, bit for bit, as without the break, for any number of threads (but not with --time). Where there is no file yet it begins anew, so that the same command can be given again and again. How the picture is shown and written may change, and --noise and --time; a film of anything else is refused. Of one that is finished the picture is written anew.
+    /// The same, bit for bit, as without the break, for any number of threads (but not with --time). Where there is no file yet it begins anew, so that the same command can be given again and again. How the picture is shown and written may change, and --noise and --time (with other numbers, sums may differ in last digits); a film of anything else is refused. Of one that is finished the picture is written anew.
     #[arg(long, requires = "checkpoint", hide_short_help = true)]
     pub(super) resume: bool,
 
@@ -34,7 +34,7 @@ pub(crate) struct WorkArgs {
     /// Render a rectangle of the picture alone
     ///
     /// Column and row of its upper left pixel, counted from 0, its width and its height. They are the same pixels, bit for bit, as in the whole picture.
-    #[arg(long, value_name = "X,Y,W,H", value_parser = region, conflicts_with = "tile", hide_short_help = true)]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = region, allow_hyphen_values = true, conflicts_with = "tile", hide_short_help = true)]
     region: Option<Region>,
 
     /// Render one of N shares, for `raywood merge`
