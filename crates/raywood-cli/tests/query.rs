@@ -468,6 +468,7 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
         "quote.csv",
         &[&b"ox,oy,oz,dx,dy,dz\n\""[..], &b"0,0,5,0,0,-1\n".repeat(200_000)].concat(),
     );
+    write("lines.csv", b"\"x\",y,z\n0,0,\"two\n\x1b[31mlines of more than forty characters\"\n");
     write("nan.csv", b"0,0,5,0,0,-1\n0,NaN,5,0,0,-1\n");
     write("broken.jsonl", b"{\"origin\": [0,0,5], \"direction\": [0,0,-1]}\n{\"origin\": [0,0,5]");
     write("key.jsonl", b"\n{\"origin\": [0,0,5]}\n");
@@ -483,6 +484,9 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
         &[("rays", npy("<f4", "False", "(10, 6)", &six(10)))],
         stored,
     );
+    let names: Vec<_> = (0..100).map(|n| format!("{n}\n{}", "x".repeat(1000))).collect();
+    let arrays: Vec<_> = names.iter().map(|name| (name.as_str(), vectors(1))).collect();
+    write_archive(&folder.join("names.npz"), &arrays, stored);
     let mut damaged = fs::read(folder.join("damaged.npz")).expect("a file");
     damaged[250] ^= 1;
     write("damaged.npz", &damaged);
@@ -508,7 +512,11 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
         ("--rays fields.csv", "fields.csv:3: 5 fields, expected 6 as in the first line"),
         ("--rays nothing.csv", "nothing.csv: empty, expected a line of names"),
         ("--rays bare.csv", "bare.csv:1: 3 numbers and no names, expected a line of names"),
-        ("--rays quote.csv", "quote.csv: a line or quotation of more than 1048576 bytes"),
+        ("--rays quote.csv", "quote.csv:2: a line or quotation of more than 1048576 bytes"),
+        (
+            "--points lines.csv",
+            r"lines.csv:2: `z` is `two\n\u{1b}[31mlines of more than forty charac...`, expected a number",
+        ),
         ("--rays nan.csv --strict", "nan.csv: row 1 (from 0) is not finite"),
         ("--rays short.npy --max-hits 3", "--max-hits is for --kind all"),
         ("--rays broken.jsonl", "broken.jsonl:2: not JSON from column"),
@@ -516,7 +524,12 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
         ("--rays two.jsonl", "two.jsonl:1: `origin` is not an array of three numbers"),
         ("--rays rays.xyz", "rays.xyz: its ending tells no format"),
         ("--rays missing.npy", "missing.npy: no such file"),
-        ("--rays alone.npz", "alone.npz: origins, expected `origins` and `directions`, or `rays`"),
+        (
+            "--rays alone.npz",
+            "alone.npz: has `origins`, expected `origins` and `directions`, or `rays`",
+        ),
+        ("--rays names.npz", r"names.npz: has `0\nxxxxxxx"),
+        ("--points names.npz", "...` and 92 more, expected `points`"),
         ("--rays differ.npz", "differ.npz: array `directions`: shape (4, 3), expected (3, 3)"),
         ("--rays damaged.npz", "damaged.npz: array `rays`: its checksum is wrong"),
         ("--rays short.npy --kind inside", "--kind inside is asked of points"),
@@ -529,6 +542,7 @@ fn bad_input_is_told_in_one_line_and_leaves_no_file() {
             assert_eq!(code(&output), 2, "{arguments}: {said}");
             assert!(said.starts_with("raywood: error: ") && said.contains(expected), "{said}");
             assert_eq!(said.lines().count(), 1, "{said}");
+            assert!(said.len() < 600, "{said}");
         }
         assert_eq!(files(&folder).len(), before, "{arguments} left a file");
     }
@@ -552,6 +566,13 @@ fn what_is_not_used_is_told_and_a_reader_may_leave() {
     let warning = "raywood: warning: standard input: column `id` is not used\n\
         raywood: warning: standard input: 1 of the points are not finite and miss, the first in row 1 (from 0)\n";
     assert_eq!((code(&output), stderr(&output).as_str()), (0, warning));
+
+    // Only of the first, and in short, where there are very many.
+    let names: String = (0..100).map(|n| format!(",{n}{}", "x".repeat(1000))).collect();
+    let output = with_input(&folder, arguments, format!("x,y,z{names}\n").as_bytes());
+    let said = stderr(&output);
+    let last = "raywood: warning: standard input: further columns that are not used: 84\n";
+    assert!(said.ends_with(last) && said.lines().count() == 17 && said.len() < 2000, "{said}");
 
     let rows = rays(100_000);
     let bytes = little(rows.iter().flatten().copied());

@@ -108,7 +108,7 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// A piece of a file in quotes for a message: one line, shortened if long.
-pub(crate) fn quoted(bytes: &[u8]) -> String {
+pub fn quoted(bytes: &[u8]) -> String {
     format!("`{}`", shortened(bytes))
 }
 

@@ -33,7 +33,7 @@ pub use builtin::{BuiltinError, DEFAULT_BUILTIN, builtin, builtins};
 pub use camera::Camera;
 pub use color::{Rgb, linear_to_srgb, luminance, srgb_to_linear};
 pub use environment::{Environment, Sky, SkyError, load_environment};
-pub use error::{LoadError, Place};
+pub use error::{LoadError, Place, quoted};
 pub use files_read::{FileStamp, files_read};
 pub use flatten::TooManyTriangles;
 pub use framing::{

@@ -6,10 +6,16 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use raywood_scene::quoted;
+
 use crate::failure::Failure;
+use crate::print;
 
 /// What stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
+
+/// Nobody reads more warnings of a kind.
+pub(crate) const MOST_WARNINGS: usize = 16;
 
 /// A file, or standard input.
 #[derive(Clone, Debug)]
@@ -57,6 +63,20 @@ impl Input {
             | io::ErrorKind::UnexpectedEof
             | io::ErrorKind::PermissionDenied => self.complain(error),
             _ => Failure::WhileRunning(format!("{}: cannot be read: {error}", self.name())),
+        }
+    }
+
+    /// Tells of columns or arrays that nothing is done with; only of the first, where there are very many.
+    pub(crate) fn warn_of_unused<'a>(&self, thing: &str, names: impl Iterator<Item = &'a str>) {
+        let mut names = names.fuse();
+        for name in names.by_ref().take(MOST_WARNINGS) {
+            let name = quoted(name.as_bytes());
+            print::warning(format_args!("{}: {thing} {name} is not used", self.name()));
+        }
+        let more = names.count();
+        if more > 0 {
+            let name = self.name();
+            print::warning(format_args!("{name}: further {thing}s that are not used: {more}"));
         }
     }
 

@@ -3,10 +3,10 @@
 use std::io::{self, Read};
 
 use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
+use raywood_scene::quoted;
 
 use super::super::Rows;
 use crate::failure::Failure;
-use crate::print;
 use crate::query::input::{Input, Stream};
 use crate::query::kind::Subject;
 
@@ -67,7 +67,7 @@ impl CsvRows {
         let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(stream);
         let mut record = ByteRecord::new();
         let found = reader.read_byte_record(&mut record);
-        if !found.map_err(|error| cannot_read(&input, error))? {
+        if !found.map_err(|error| cannot_read(&input, &record, error))? {
             return Err(input.complain(format_args!("empty, expected {}", example(subject))));
         }
         let fields = record.len();
@@ -82,11 +82,10 @@ impl CsvRows {
 
     /// Appends the numbers of the record that was read.
     fn append(&self, numbers: &mut Vec<f32>) -> Result<(), Failure> {
-        let line = || self.record.position().map_or(0, csv::Position::line);
         if self.record.len() != self.fields {
-            let (line, found, expected) = (line(), self.record.len(), self.fields);
+            let (found, expected) = (self.record.len(), self.fields);
             return Err(self.input.complain_at(
-                line,
+                line_of(&self.record),
                 format_args!("{found} fields, expected {expected} as in the first line"),
             ));
         }
@@ -98,11 +97,11 @@ impl CsvRows {
             let field = &self.record[column];
             let number = parse(field, wanted.empty);
             let Some(number) = number else {
-                let (line, name) = (line(), wanted.names[0]);
-                let found = String::from_utf8_lossy(&field[..field.len().min(40)]);
-                return Err(self
-                    .input
-                    .complain_at(line, format_args!("`{name}` is `{found}`, expected a number")));
+                let (name, found) = (wanted.names[0], quoted(field));
+                return Err(self.input.complain_at(
+                    line_of(&self.record),
+                    format_args!("`{name}` is {found}, expected a number"),
+                ));
             };
             numbers.push(number);
         }
@@ -124,7 +123,7 @@ impl Rows for CsvRows {
             if !std::mem::take(&mut self.is_ahead) {
                 self.reader.get_mut().left = LONGEST_RECORD;
                 let found = self.reader.read_byte_record(&mut self.record);
-                if !found.map_err(|error| cannot_read(&self.input, error))? {
+                if !found.map_err(|error| cannot_read(&self.input, &self.record, error))? {
                     return Ok(row);
                 }
             }
@@ -188,11 +187,8 @@ fn columns_by_name(
             return Err(input.complain_at(1, message));
         }
     }
-    for (column, name) in names.iter().enumerate() {
-        if !columns.contains(&Some(column)) {
-            print::warning(format_args!("{}: column `{name}` is not used", input.name()));
-        }
-    }
+    let unused = names.iter().enumerate().filter(|(column, _)| !columns.contains(&Some(*column)));
+    input.warn_of_unused("column", unused.map(|(_, name)| name.as_str()));
     Ok(columns)
 }
 
@@ -206,8 +202,7 @@ struct Bounded {
 impl Read for Bounded {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         if self.left == 0 {
-            let message = format!("a line or quotation of more than {LONGEST_RECORD} bytes");
-            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+            return Err(io::ErrorKind::FileTooLarge.into());
         }
         let count = self.stream.read(bytes)?;
         self.left = self.left.saturating_sub(count);
@@ -215,10 +210,19 @@ impl Read for Bounded {
     }
 }
 
-/// What the reader of lines says.
-fn cannot_read(input: &Input, error: csv::Error) -> Failure {
+/// The line that a record begins in; the first is 1.
+fn line_of(record: &ByteRecord) -> u64 {
+    record.position().map_or(1, csv::Position::line)
+}
+
+/// What the reader of lines says of a record.
+fn cannot_read(input: &Input, record: &ByteRecord, error: csv::Error) -> Failure {
     let text = error.to_string();
     match error.into_kind() {
+        ErrorKind::Io(error) if error.kind() == io::ErrorKind::FileTooLarge => {
+            let message = format!("a line or quotation of more than {LONGEST_RECORD} bytes");
+            input.complain_at(line_of(record), message)
+        }
         ErrorKind::Io(error) => input.cannot_read(&error),
         _ => input.complain(text),
     }

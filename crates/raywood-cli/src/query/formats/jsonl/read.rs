@@ -3,12 +3,13 @@
 use std::io::{BufRead, BufReader, Read};
 
 use rayon::prelude::*;
+use raywood_scene::quoted;
 use serde_json::{Map, Value};
 
 use super::super::Rows;
 use crate::failure::Failure;
 use crate::print;
-use crate::query::input::{Input, Stream};
+use crate::query::input::{Input, MOST_WARNINGS, Stream};
 use crate::query::kind::Subject;
 
 /// A longer line is no ray.
@@ -114,9 +115,10 @@ impl JsonRows {
             numbers.extend(row);
             if let Some(name) = unused
                 && !self.unused.contains(&name)
-                && self.unused.len() < 16
+                && self.unused.len() < MOST_WARNINGS
             {
-                print::warning(format_args!("{}: `{name}` is not used", self.input.name()));
+                let quoted = quoted(name.as_bytes());
+                print::warning(format_args!("{}: {quoted} is not used", self.input.name()));
                 self.unused.push(name);
             }
         }

@@ -30,7 +30,7 @@ impl NpyArray {
         reopen: impl FnOnce(Stream, u64, &[u64]) -> io::Result<Vec<Stream>>,
     ) -> Result<Self, Failure> {
         let header = Header::read(&mut stream).map_err(|error| match error {
-            HeaderError::Io(error) => input.cannot_read(&error),
+            HeaderError::Io(error) => cannot_read(input, &label, &error),
             HeaderError::Wrong(message) => input.complain(format_args!("{label}{message}")),
         })?;
         let Header { element, fortran_order, shape, length } = header;
@@ -46,7 +46,7 @@ impl NpyArray {
         let streams = if fortran_order && (2..=8).contains(&width) {
             let offsets: Vec<_> = (0..width).map(|column| column * rows * size).collect();
             let streams = reopen(stream, length, &offsets);
-            streams.map_err(|error| input.cannot_read(&error))?
+            streams.map_err(|error| cannot_read(input, &label, &error))?
         } else {
             vec![stream]
         };
@@ -152,8 +152,13 @@ impl NpyArray {
     }
 
     fn cannot_read(&self, error: &io::Error) -> Failure {
-        self.input.cannot_read(&io::Error::new(error.kind(), format!("{}{error}", self.label)))
+        cannot_read(&self.input, &self.label, error)
     }
+}
+
+/// Of one array among several, which.
+fn cannot_read(input: &Input, label: &str, error: &io::Error) -> Failure {
+    input.cannot_read(&io::Error::new(error.kind(), format!("{label}{error}")))
 }
 
 fn buffered(stream: Stream) -> Stream {

@@ -4,6 +4,7 @@ use std::io::{self, Read};
 
 use flate2::Crc;
 use flate2::read::DeflateDecoder;
+use raywood_scene::quoted;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::super::npy::NpyArray;
@@ -64,7 +65,7 @@ impl Archive {
     pub(super) fn array(&self, names: &[&str]) -> Result<Option<NpyArray>, Failure> {
         let found = names.iter().find_map(|name| self.entries.iter().find(|e| e.name == *name));
         let Some(entry) = found else { return Ok(None) };
-        let label = format!("array `{}`: ", entry.name);
+        let label = format!("array {}: ", quoted(entry.name.as_bytes()));
         if entry.encrypted
             || !matches!(entry.method, CompressionMethod::Stored | CompressionMethod::Deflated)
         {

@@ -1,10 +1,11 @@
 //! Reads rows from several arrays side by side.
 
+use raywood_scene::quoted;
+
 use super::super::Rows;
 use super::super::npy::{NpyArray, NpyRows};
 use super::archive::Archive;
 use crate::failure::Failure;
-use crate::print;
 use crate::query::input::Input;
 use crate::query::kind::Subject;
 
@@ -63,8 +64,8 @@ impl NpzRows {
                 Subject::Rays => "`origins` and `directions`, or `rays`",
                 Subject::Points => "`points`",
             };
-            let found = if names.is_empty() { "no arrays".to_owned() } else { names.join(", ") };
-            return Err(archive.input.complain(format_args!("{found}, expected {expected}")));
+            let found = listed(&names);
+            return Err(archive.input.complain(format_args!("has {found}, expected {expected}")));
         };
         warn_of_others(&archive, &[ORIGINS, DIRECTIONS, T_MIN, T_MAX]);
         for array in [&origins, &directions] {
@@ -91,9 +92,22 @@ impl NpzRows {
 
 /// Tells of arrays that nothing is done with.
 fn warn_of_others(archive: &Archive, used: &[&[&str]]) {
-    for name in archive.names().filter(|name| !used.iter().any(|names| names.contains(name))) {
-        print::warning(format_args!("{}: array `{name}` is not used", archive.input.name()));
+    let unused = archive.names().filter(|name| !used.iter().any(|names| names.contains(name)));
+    archive.input.warn_of_unused("array", unused);
+}
+
+/// The names of arrays for a message, the first of very many.
+fn listed(names: &[&str]) -> String {
+    const MOST: usize = 8;
+    if names.is_empty() {
+        return "no arrays".to_owned();
     }
+    let first: Vec<_> = names.iter().take(MOST).map(|name| quoted(name.as_bytes())).collect();
+    let more = match names.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    first.join(", ") + &more
 }
 
 impl Limit {
