@@ -12,3 +12,6 @@ pub(crate) mod questioner;
 mod records;
 pub(crate) mod sink;
 mod table;
+mod whole_file;
+
+pub use whole_file::{FileRows, read_points, read_rays};
