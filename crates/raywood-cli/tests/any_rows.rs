@@ -3,7 +3,7 @@
 
 #![allow(unreachable_pub)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::{env, fs, process};
 
 use raywood_cli::{read_points, read_rays};
@@ -69,6 +69,8 @@ impl Drop for File {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
 
     #[test]
