@@ -28,8 +28,7 @@ pub(crate) fn install() {
         if let Some(path) = unfinished.as_deref() {
             let _ = std::fs::remove_file(path);
         }
-        let lost = "at once: what is not written yet is lost";
-        print::failure(&Failure::Interrupted(lost.to_owned()));
+        print::failure(&Failure::Interrupted("at once; nothing more is written".to_owned()));
         std::process::exit(EXIT_CODE.into());
     });
     // Without a handler Ctrl-C still ends the program, only less tidily.

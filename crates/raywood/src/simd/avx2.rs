@@ -59,6 +59,20 @@ pub(crate) struct F8(__m256);
 #[derive(Clone, Copy)]
 pub(crate) struct F16([F8; 2]);
 
+/// Eight numbers, each from the lane that is given for it.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+pub(super) unsafe fn permuted_eight(v: __m256, from: &[u8; 8]) -> __m256 {
+    // SAFETY: the caller's promise; eight bytes can be read.
+    unsafe {
+        let lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()));
+        _mm256_permutevar8x32_ps(v, lanes)
+    }
+}
+
 macro_rules! operators {
     ($($trait:ident $method:ident $instruction:ident;)*) => {
         $(
@@ -269,11 +283,8 @@ impl Simd for Avx2 {
 
     #[inline(always)]
     fn permuted8(self, numbers: F8, from: &[u8; 8]) -> F8 {
-        // SAFETY: the token; eight bytes can be read.
-        unsafe {
-            let lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()));
-            F8(_mm256_permutevar8x32_ps(numbers.0, lanes))
-        }
+        // SAFETY: the token.
+        F8(unsafe { permuted_eight(numbers.0, from) })
     }
 
     #[inline(always)]

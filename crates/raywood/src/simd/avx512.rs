@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::avx2::{greatest_of_eight, least_of_eight};
+use super::avx2::{greatest_of_eight, least_of_eight, permuted_eight};
 use super::{BitPlaces, Float, Kernel, PLACES, Simd};
 use crate::Vec3;
 
@@ -252,11 +252,8 @@ impl Simd for Avx512 {
 
     #[inline(always)]
     fn permuted8(self, numbers: F8, from: &[u8; 8]) -> F8 {
-        // SAFETY: the token; eight bytes can be read.
-        unsafe {
-            let lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()));
-            F8(_mm256_permutevar8x32_ps(numbers.0, lanes))
-        }
+        // SAFETY: the token.
+        F8(unsafe { permuted_eight(numbers.0, from) })
     }
 
     #[inline(always)]

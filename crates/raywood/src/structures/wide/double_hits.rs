@@ -60,6 +60,7 @@ impl<V: HitVisitor<Hit64>, const ONCE: bool> Kernel for HitsInDouble<'_, V, ONCE
             } else {
                 let node = tree.node(current);
                 let (met, near) = slabs.children_met(simd, node, limit);
+                // In order even where the limit stays as it is: that takes little beside what double precision is asked.
                 top += simd.push_sorted(met, near, &node.children, (keys, items), top).0;
             }
 
