@@ -13,9 +13,6 @@ use raywood::{Ray, TriangleMesh, Vec3};
 
 use crate::memory::Memory;
 
-/// How many rays a packet holds.
-pub(crate) const LANES: usize = 16;
-
 const GEOMETRY_TYPE_TRIANGLE: c_int = 0;
 const BUFFER_TYPE_INDEX: c_int = 0;
 const BUFFER_TYPE_VERTEX: c_int = 1;
@@ -53,8 +50,34 @@ struct Functions {
     set_memory_monitor: unsafe extern "C" fn(Handle, Monitor, *const Held),
     intersect1: unsafe extern "C" fn(Handle, *mut Single, *mut Arguments),
     occluded1: unsafe extern "C" fn(Handle, *mut Single, *mut Arguments),
-    intersect16: unsafe extern "C" fn(*const [c_int; LANES], Handle, *mut Lanes, *mut Arguments),
-    occluded16: unsafe extern "C" fn(*const [c_int; LANES], Handle, *mut Lanes, *mut Arguments),
+    packets_of_8: PacketFunctions<8>,
+    packets_of_16: PacketFunctions<16>,
+}
+
+/// The functions that trace packets of `N` rays.
+struct PacketFunctions<const N: usize> {
+    intersect: PacketFunction<N>,
+    occluded: PacketFunction<N>,
+}
+
+type PacketFunction<const N: usize> =
+    unsafe extern "C" fn(*const [c_int; N], Handle, *mut Lanes<N>, *mut Arguments);
+
+/// That there are packets of `N` rays.
+trait TracesPackets<const N: usize> {
+    fn packets(&self) -> &PacketFunctions<N>;
+}
+
+impl TracesPackets<8> for Functions {
+    fn packets(&self) -> &PacketFunctions<8> {
+        &self.packets_of_8
+    }
+}
+
+impl TracesPackets<16> for Functions {
+    fn packets(&self) -> &PacketFunctions<16> {
+        &self.packets_of_16
+    }
 }
 
 /// Called before or after memory is taken or given back, from any thread; refuses it by returning false.
@@ -131,8 +154,14 @@ impl Library {
             set_memory_monitor: function!("rtcSetDeviceMemoryMonitorFunction"),
             intersect1: function!("rtcIntersect1"),
             occluded1: function!("rtcOccluded1"),
-            intersect16: function!("rtcIntersect16"),
-            occluded16: function!("rtcOccluded16"),
+            packets_of_8: PacketFunctions {
+                intersect: function!("rtcIntersect8"),
+                occluded: function!("rtcOccluded8"),
+            },
+            packets_of_16: PacketFunctions {
+                intersect: function!("rtcIntersect16"),
+                occluded: function!("rtcOccluded16"),
+            },
         };
         let device = new_device(&functions, &config).map_err(|error| complain(&error))?;
         // SAFETY: the device lives.
@@ -492,44 +521,74 @@ impl Record for Single {
     }
 }
 
-/// `RTCRayHit16`; it starts with its `RTCRay16`.
-#[derive(Clone, Debug, Default)]
+/// `RTCRayHit8` or `RTCRayHit16`; it starts with its `RTCRay8` or `RTCRay16`. Those of 8 need no more than multiples of 32 bytes.
+#[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Lanes {
-    origin: [[f32; LANES]; 3],
-    tnear: [f32; LANES],
-    direction: [[f32; LANES]; 3],
-    time: [f32; LANES],
-    tfar: [f32; LANES],
-    mask: [u32; LANES],
-    id: [u32; LANES],
-    flags: [u32; LANES],
-    normal: [[f32; LANES]; 3],
-    u: [f32; LANES],
-    v: [f32; LANES],
-    primitive: [u32; LANES],
-    geometry: [u32; LANES],
-    instance: [u32; LANES],
+struct Lanes<const N: usize> {
+    origin: [[f32; N]; 3],
+    tnear: [f32; N],
+    direction: [[f32; N]; 3],
+    time: [f32; N],
+    tfar: [f32; N],
+    mask: [u32; N],
+    id: [u32; N],
+    flags: [u32; N],
+    normal: [[f32; N]; 3],
+    u: [f32; N],
+    v: [f32; N],
+    primitive: [u32; N],
+    geometry: [u32; N],
+    instance: [u32; N],
     /// Only in releases from 4.3 on; others leave it alone.
-    instance_primitive: [u32; LANES],
+    instance_primitive: [u32; N],
 }
 
-/// A packet of rays, and which of its lanes hold one.
-#[derive(Clone, Debug, Default)]
+impl<const N: usize> Lanes<N> {
+    /// No rays, and no answers.
+    const EMPTY: Self = Self {
+        origin: [[0.0; N]; 3],
+        tnear: [0.0; N],
+        direction: [[0.0; N]; 3],
+        time: [0.0; N],
+        tfar: [0.0; N],
+        mask: [0; N],
+        id: [0; N],
+        flags: [0; N],
+        normal: [[0.0; N]; 3],
+        u: [0.0; N],
+        v: [0.0; N],
+        primitive: [0; N],
+        geometry: [INVALID_GEOMETRY; N],
+        instance: [INVALID_GEOMETRY; N],
+        instance_primitive: [INVALID_GEOMETRY; N],
+    };
+}
+
+/// A packet of 8 or 16 rays, and which of its lanes hold one.
+#[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Packet {
-    lanes: Lanes,
+pub(crate) struct Packet<const N: usize> {
+    lanes: Lanes<N>,
     /// -1 where there is a ray, else 0.
-    valid: [c_int; LANES],
+    valid: [c_int; N],
 }
 
-impl Record for Packet {
-    const RAYS: usize = LANES;
+impl<const N: usize> Default for Packet<N> {
+    fn default() -> Self {
+        Self { lanes: Lanes::EMPTY, valid: [0; N] }
+    }
+}
+
+impl<const N: usize> Record for Packet<N>
+where
+    Functions: TracesPackets<N>,
+{
+    const RAYS: usize = N;
 
     fn pack(&mut self, rays: &[Ray]) {
         *self = Self::default();
         let lanes = &mut self.lanes;
-        for (lane, ray) in rays.iter().take(LANES).enumerate() {
+        for (lane, ray) in rays.iter().take(N).enumerate() {
             for axis in 0..3 {
                 lanes.origin[axis][lane] = ray.origin[axis];
                 lanes.direction[axis][lane] = ray.direction[axis];
@@ -539,19 +598,16 @@ impl Record for Packet {
             lanes.mask[lane] = u32::MAX;
             self.valid[lane] = -1;
         }
-        lanes.geometry = [INVALID_GEOMETRY; LANES];
-        lanes.instance = [INVALID_GEOMETRY; LANES];
-        lanes.instance_primitive = [INVALID_GEOMETRY; LANES];
     }
 
     fn trace(scene: &Scene<'_>, records: &mut [Self], any_hit: bool, coherence: Coherence) {
-        let f = &scene.library.functions;
-        let function = if any_hit { f.occluded16 } else { f.intersect16 };
+        let f: &PacketFunctions<N> = scene.library.functions.packets();
+        let function = if any_hit { f.occluded } else { f.intersect };
         let (scene, mut arguments) = (scene.handle.as_ptr(), Arguments::new(coherence));
         with_flushed_denormals(|| {
             for Self { lanes, valid } in records {
-                // SAFETY: the scene is committed; the lanes have the layout and alignment of an `RTCRayHit16`, which starts with an `RTCRay16`,
-                // are ours alone, and no filter or user geometry is called. The mask has 16 numbers, at a multiple of 64 bytes.
+                // SAFETY: the scene is committed; the lanes have the layout and alignment of an `RTCRayHit` of `N`, which starts with its
+                // `RTCRay`, are ours alone, and no filter or user geometry is called. The mask has `N` numbers, at a multiple of 64 bytes.
                 unsafe { function(valid, scene, lanes, &raw mut arguments) };
             }
         });
@@ -564,11 +620,15 @@ impl Record for Packet {
 
 // Where the headers put things.
 const _: () = assert!(size_of::<Vec3>() == 12);
-const _: () = assert!(size_of::<Single>() == 96 && size_of::<Lanes>() == 21 * 64);
+const _: () = assert!(size_of::<Single>() == 96 && size_of::<Lanes<16>>() == 21 * 64);
 const _: () = assert!(offset_of!(Single, normal) == 48 && offset_of!(Single, geometry) == 72);
-const _: () = assert!(offset_of!(Lanes, tfar) == 8 * 64 && offset_of!(Lanes, normal) == 12 * 64);
-const _: () = assert!(offset_of!(Lanes, geometry) == 18 * 64);
-const _: () = assert!(offset_of!(Packet, valid).is_multiple_of(64));
+const _: () =
+    assert!(offset_of!(Lanes<16>, tfar) == 8 * 64 && offset_of!(Lanes<16>, normal) == 12 * 64);
+const _: () = assert!(
+    offset_of!(Lanes<8>, geometry) == 18 * 32 && offset_of!(Lanes<16>, geometry) == 18 * 64
+);
+const _: () = assert!(offset_of!(Packet<8>, valid).is_multiple_of(64));
+const _: () = assert!(offset_of!(Packet<16>, valid).is_multiple_of(64));
 
 /// Calls `f` with denormal numbers taken for zero and made zero, as Embree's manual asks of every thread that traces.
 fn with_flushed_denormals(f: impl FnOnce()) {
@@ -605,8 +665,8 @@ mod tests {
     fn packets_hold_rays_in_lanes() {
         let ray = |x: f32| Ray::new([x, 2.0, 3.0], [0.0, 1.0, x]).with_interval(0.5, 10.0 + x);
         let rays: Vec<_> = (0..5).map(|i| ray(i as f32)).collect();
-        let mut packet = Packet::default();
-        packet.pack(&[ray(7.0); LANES]);
+        let mut packet = Packet::<8>::default();
+        packet.pack(&[ray(7.0); 8]);
         packet.pack(&rays);
         assert_eq!(packet.valid[3..7], [-1, -1, 0, 0]);
         let lanes = &packet.lanes;

@@ -3,5 +3,5 @@
 mod ffi;
 
 pub(crate) use ffi::{
-    Coherence, LANES, Library, Packet, Quality, Record, Robustness, Scene, SharedMesh, Single,
+    Coherence, Library, Packet, Quality, Record, Robustness, Scene, SharedMesh, Single,
 };

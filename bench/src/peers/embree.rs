@@ -1,4 +1,4 @@
-//! Embree 4: single rays and packets of 16, with and without its COHERENT flag, in scenes with and without its ROBUST flag, both of
+//! Embree 4: single rays and packets of 8 and 16, with and without its COHERENT flag, in scenes with and without its ROBUST flag, both of
 //! build quality HIGH.
 
 use rayon::prelude::*;
@@ -7,12 +7,12 @@ use raywood::TriangleMesh;
 use super::each_ray::PIECE;
 use super::{Built, Mode, Peer, PeerEntry, Tracer};
 use crate::answers::Answers;
-use crate::embree::{Coherence, LANES, Library, Packet, Record, Robustness, Scene, Single};
+use crate::embree::{Coherence, Library, Packet, Record, Robustness, Scene, Single};
 use crate::ray_sets::RaySet;
 
 pub(super) const ENTRY: PeerEntry = PeerEntry {
     name: "embree",
-    settings: "build quality HIGH; flush-to-zero and denormals-are-zero while tracing; `1` single rays, `16` packets of 16, `coherent` with RTC_RAY_QUERY_FLAG_COHERENT, `robust` with RTC_SCENE_FLAG_ROBUST",
+    settings: "build quality HIGH; flush-to-zero and denormals-are-zero while tracing; `1` single rays, `8` and `16` packets, `coherent` with RTC_RAY_QUERY_FLAG_COHERENT, `robust` with RTC_SCENE_FLAG_ROBUST",
     build,
 };
 
@@ -36,8 +36,10 @@ impl Peer for Embree<'_> {
         let mut modes = fast_modes(fast);
         modes.extend([
             mode::<Single>("1 robust", robust, incoherent),
-            mode::<Packet>("16 robust", robust, incoherent),
-            mode::<Packet>("16 coherent robust", robust, coherent),
+            mode::<Packet<8>>("8 robust", robust, incoherent),
+            mode::<Packet<8>>("8 coherent robust", robust, coherent),
+            mode::<Packet<16>>("16 robust", robust, incoherent),
+            mode::<Packet<16>>("16 coherent robust", robust, coherent),
         ]);
         modes
     }
@@ -47,8 +49,10 @@ impl Peer for Embree<'_> {
 pub(super) fn fast_modes<'a>(scene: &'a Scene<'a>) -> Vec<Mode<'a>> {
     vec![
         mode::<Single>("1", scene, Coherence::Incoherent),
-        mode::<Packet>("16", scene, Coherence::Incoherent),
-        mode::<Packet>("16 coherent", scene, Coherence::Coherent),
+        mode::<Packet<8>>("8", scene, Coherence::Incoherent),
+        mode::<Packet<8>>("8 coherent", scene, Coherence::Coherent),
+        mode::<Packet<16>>("16", scene, Coherence::Incoherent),
+        mode::<Packet<16>>("16 coherent", scene, Coherence::Coherent),
     ]
 }
 
@@ -102,4 +106,4 @@ impl<R: Record> Tracer for Records<'_, R> {
     }
 }
 
-const _: () = assert!(PIECE.is_multiple_of(LANES));
+const _: () = assert!(PIECE.is_multiple_of(16));
