@@ -342,6 +342,36 @@ fn rays_of_several_packets_in_turn_agree_with_single_rays() {
     check(&mut structure, &rays, "in another order");
 }
 
+/// Rays from all over two or three small patches to a light, behind a wall of small triangles with holes: a group of both meets all triangles between.
+#[test]
+fn rays_in_bunches_agree_with_single_rays() {
+    let mut rng = Rng::new(31);
+    let wall = shapes::soup(3000, 0.06, 8);
+    let light = Vec3::new(0.1, 0.2, 6.0);
+    let mut structure = build(&wall);
+    let patches =
+        [Vec3::new(-0.9, -0.8, -4.0), Vec3::new(0.9, 0.7, -4.0), Vec3::new(0.8, -0.9, -4.0)];
+    for (patches, size) in [(&patches[..2], 0.02), (&patches[..], 0.1), (&patches[1..], 0.5)] {
+        // Mostly the first patch, as beside the edge of something, or each in turn.
+        for share in [0.06, 0.4] {
+            let ends: Vec<Vec3> = (0..1000)
+                .map(|_| {
+                    let others = 1 + rng.below(patches.len() - 1);
+                    let patch = patches[if rng.unit() < share { others } else { 0 }];
+                    patch + size * rng.in_cube()
+                })
+                .collect();
+            let to_light: Vec<_> = ends.iter().map(|&end| Ray::between(end, light)).collect();
+            let from_light: Vec<_> = ends.iter().map(|&end| Ray::new(light, end - light)).collect();
+            check(&mut structure, &to_light, "to the light");
+            check(&mut structure, &from_light, "from the light");
+            let down: Vec<_> =
+                ends.iter().map(|&end| Ray::new(end, Vec3::new(0.01, 0.02, 1.0))).collect();
+            check(&mut structure, &down, "parallel");
+        }
+    }
+}
+
 #[test]
 fn rays_of_any_kind_among_others_change_nothing_for_these() {
     let mesh = shapes::soup(3000, 0.2, 3);

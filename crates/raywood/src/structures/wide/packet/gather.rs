@@ -180,7 +180,9 @@ impl Packet {
         if is_sorted {
             self.sort::<S, K>(simd, scattered);
             self.measure::<S, K>(simd);
+            scattered = self.scattered(simd);
         }
+        self.wide = scattered;
         true
     }
 

@@ -15,12 +15,15 @@ mod image;
 mod kind;
 mod leaving;
 mod meeting;
+mod narrow;
+mod pairs;
 mod parallel;
 mod sort;
 #[cfg(test)]
 mod tests;
 mod triangles;
 mod waiting;
+mod work;
 
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
@@ -35,6 +38,7 @@ use groups::Groups;
 use kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
 use triangles::{TRIANGLES, Triangles};
 use waiting::Waiting;
+use work::most_work;
 
 /// How many rays a packet has at most.
 pub(super) const RAYS: usize = 256;
@@ -65,13 +69,15 @@ pub(super) struct Packet {
     is_bounded: bool,
     /// The groups whose rays are others than in the slice.
     sorted: u32,
+    /// The groups that take up much of the packet's width even so.
+    wide: u32,
     /// The rays of the slice that no packet has taken.
     waiting: Waiting,
     /// Whether there was another packet of the same slice before.
     is_later: bool,
     /// Which ray of the slice each one is.
     numbers: [[u8; GROUP]; GROUP],
-    /// How many triangles each group was tested against, and against how many it may be.
+    /// How much [work] each group was, and how much it may be.
     work: [f32; GROUP],
     most_work: [f32; GROUP],
     /// The rays of each group that must be traced alone after all.
@@ -82,26 +88,11 @@ pub(super) struct Packet {
     pairs: [u32; 1 + (TRIANGLES + 1) * GROUP],
 }
 
-/// The pairs of each triangle of two leaves with every group.
-const PAIRS: [[u32; GROUP]; TRIANGLES] = {
-    let mut pairs = [[0; GROUP]; TRIANGLES];
-    let mut pair = 0;
-    while pair < TRIANGLES * GROUP {
-        pairs[pair / GROUP][pair % GROUP] = pair as u32;
-        pair += 1;
-    }
-    pairs
-};
-
 /// Depths with a larger relative error are not trusted: the triangle test of single rays decides.
 const TOLERANCE: f32 = 1.0 / 4096.0;
 
 /// The same where depths need not be known, only whether they are less than another one.
 const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
-
-/// A group is given up when it was tested against more triangles than this for each of its rays of which not all is known: about as long does it take to
-/// trace these one by one.
-const MOST_WORK: f32 = 8.0;
 
 /// Sixteen bits.
 const ALL: u32 = 0xffff;
@@ -218,6 +209,7 @@ impl Packet {
             start: f32::INFINITY,
             is_bounded: false,
             sorted: 0,
+            wide: 0,
             waiting: Waiting::first(0),
             is_later: false,
             numbers: [[0; GROUP]; GROUP],
@@ -247,11 +239,7 @@ impl Packet {
         if piece.tree.root == Reference::NOTHING {
             return;
         }
-        self.work = [0.0; GROUP];
-        self.alone = [0; GROUP];
-        for (most, members) in self.most_work.iter_mut().zip(&self.members) {
-            *most = most_work(members.count_ones());
-        }
+        self.begin_work();
         let near = if K::PARALLEL { f32::NEG_INFINITY } else { 0.0 };
         stack[0] = Item { reference: piece.tree.root, groups: self.groups.live, near };
         let mut top = 1;
@@ -273,6 +261,7 @@ impl Packet {
                 }
                 self.visit_leaves::<S, R, K, FAST>(simd, piece, leaves);
             } else {
+                self.count_node(simd, groups);
                 top +=
                     self.enter_node::<S, K>(simd, piece.tree, reference, groups, &mut stack[top..]);
             }
@@ -361,18 +350,9 @@ impl Packet {
             false => Triangles::new(simd, blocks, lanes, frame, all, tolerance),
         };
 
-        // Which groups may hit which triangles: first all pairs, then one loop over them, so that the processor foresees its end.
-        let mut work = simd.load16(&self.work);
-        let mut count = 0;
-        let mut left = triangles.possible & !triangles.unknown;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize % TRIANGLES;
-            left &= left - 1;
-            let meeting =
-                triangles.groups::<S, R, K>(simd, lane, &self.groups) & leaves[lane / LANES].groups;
-            work = work.replaced(meeting, work + simd.splat16(1.0));
-            count += simd.push_chosen(meeting, &PAIRS[lane], &mut self.pairs, 1 + count).0;
-        }
+        // First all pairs, then one loop over them, so that the processor foresees its end.
+        self.count_leaves(simd, triangles.possible, first.groups | second.groups);
+        let count = self.pair_up::<S, R, K>(simd, &triangles, leaves);
         let mut touched = 0;
         for place in 1..=count {
             let pair = self.pairs[place] as usize;
@@ -421,21 +401,7 @@ impl Packet {
         }
         self.groups.look_again::<S, K>(simd);
 
-        // Give up groups that take more work than their rays would take one by one.
-        self.work = work.to_array();
-        let too_much = simd.load16(&self.most_work).less(work) & self.groups.live;
-        let mut left = too_much;
-        while left != 0 {
-            let group = left.trailing_zeros() as usize % GROUP;
-            left &= left - 1;
-            self.alone[group] = self.members[group];
-        }
-        self.groups.live &= !too_much;
+        self.narrow::<S, K>(simd);
+        self.give_up(simd);
     }
-}
-
-/// Against how many triangles a group may be tested of which so many rays have not found what they look for.
-#[inline(always)]
-fn most_work(rays: u32) -> f32 {
-    MOST_WORK * rays as f32
 }

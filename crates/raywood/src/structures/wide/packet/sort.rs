@@ -31,7 +31,7 @@ const SPREAD: [u8; CELLS] = [
 ];
 
 /// Groups wider than this share of the packet along an axis are sorted. Were all of them equal squares, they would be a quarter as wide.
-const WIDE: f32 = 0.3;
+pub(super) const WIDE: f32 = 0.3;
 
 impl Packet {
     /// The groups that are so wide that sorting helps.

@@ -1,5 +1,6 @@
 //! What one unusual ray does to the packet that it comes with: nothing but that it is traced on its own.
 
+use super::kind::Blocked;
 use super::{GROUP, Packet, RAYS};
 use crate::simd::{Kernel, Simd, SimdLevel, dispatch_on};
 use crate::{BuildOptions, Ray, TriangleMesh, Vec3, WideBvh};
@@ -159,5 +160,65 @@ fn an_unusual_ray_leaves_the_others_in_their_packet() {
                 }
             }
         }
+    }
+}
+
+/// Makes a packet of rays, has one group take much work, some rays of which have found what they look for, and makes it narrow. Which of its rays stay
+/// in the packet, which are traced alone, and how wide it is.
+struct Narrow<'a> {
+    rays: &'a [Ray],
+    group: usize,
+    blocked: u32,
+}
+
+impl Kernel for Narrow<'_> {
+    type Output = (u32, u32, f32);
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let mut packet = Packet::empty();
+        packet.begin(self.rays.len());
+        packet.gather::<S, &[Ray], true>(simd, &self.rays, &tree());
+        packet.begin_work();
+        packet.work[self.group] = 100.0;
+        for lane in (0..GROUP).filter(|lane| self.blocked >> lane & 1 == 1) {
+            packet.nearest[self.group][lane] = f32::INFINITY;
+        }
+        packet.narrow::<S, Blocked>(simd);
+        let [low, high] = packet.groups.slopes[0];
+        let width = high[self.group] - low[self.group];
+        (packet.members[self.group], packet.alone[self.group], width)
+    }
+}
+
+#[test]
+fn groups_of_two_bunches_keep_the_larger() {
+    const GROUP_OF_TWO: usize = 5;
+    const FAR: u32 = 0b1000_0100_0010_0010;
+    let mut bunches = camera_rays();
+    let mut spread = bunches.clone();
+    for lane in 0..GROUP {
+        let number = GROUP_OF_TWO * GROUP + lane;
+        bunches[number].direction.x = 1e-3 * lane as f32;
+        if FAR >> lane & 1 == 1 {
+            bunches[number].direction.x += 2.0;
+        }
+        spread[number].direction.x = 0.1 * lane as f32;
+    }
+    for level in SimdLevel::ALL.iter().copied().filter(|level| level.is_available()) {
+        let narrow = |rays: &[Ray], blocked| {
+            dispatch_on(level, Narrow { rays, group: GROUP_OF_TWO, blocked })
+        };
+        let (members, alone, width) = narrow(&bunches, 0);
+        assert_eq!((members, alone), (0xffff & !FAR, FAR), "{}", level.name());
+        assert!(width < 0.02, "{width}");
+        // Without rays that are blocked already there is but one bunch.
+        let (members, alone, width) = narrow(&bunches, FAR);
+        assert_eq!((members, alone), (0xffff, 0), "{}", level.name());
+        assert!(width < 0.02, "{width}");
+        // Half of what lies evenly is not worth the other half.
+        let (members, alone, width) = narrow(&spread, 0);
+        assert_eq!((members, alone), (0xffff, 0), "{}", level.name());
+        assert!(width > 1.4, "{width}");
     }
 }

@@ -216,6 +216,28 @@ impl Triangles {
         error.less_or_equal(least) & simd.load16(&groups.least).less(nearer)
     }
 
+    /// The triangles that a group may hit nearer than what it has: for sixteen of them what [`groups`](Self::groups) tells of one.
+    #[inline(always)]
+    pub(super) fn met_by<S: Simd, R: Source, K: Kind>(
+        &self,
+        simd: S,
+        group: usize,
+        groups: &Groups,
+    ) -> u32 {
+        let close = if R::IS_ROUNDED { CLOSE } else { 0.0 };
+        let least = self.greatest_in(simd, 0, group, groups);
+        let least = self.greatest_in(simd, 1, group, groups).smaller(least);
+        let least = self.greatest_in(simd, 2, group, groups).smaller(least);
+        let nearer = self.greatest_in(simd, 3, group, groups);
+        let (three, tolerances) = (simd.splat16(3.0), simd.load16(&self.tolerances));
+        let nearer = match K::PARALLEL {
+            true => three.mul_add(tolerances, nearer),
+            false => nearer * three.mul_add(tolerances, simd.splat16(1.0 + close)),
+        };
+        let error = simd.load16(&self.errors) * simd.splat16(-2.0);
+        error.less_or_equal(least) & simd.splat16(groups.least[group]).less(nearer)
+    }
+
     /// A function of a triangle for sixteen rays of the given slopes.
     #[inline(always)]
     pub(super) fn function<S: Simd>(
@@ -243,6 +265,26 @@ impl Triangles {
         let greatest = simd.splat16(for_x[lane]).mul_add(simd.load16(x), greatest);
         let greatest = simd.splat16(size_y[lane]).mul_add(simd.load16(reach_y), greatest);
         simd.splat16(size_x[lane]).mul_add(simd.load16(reach_x), greatest)
+    }
+
+    /// The greatest value that a function of each triangle has in a group, up to rounding.
+    #[inline(always)]
+    fn greatest_in<S: Simd>(
+        &self,
+        simd: S,
+        number: usize,
+        group: usize,
+        groups: &Groups,
+    ) -> S::F16 {
+        let [for_x, for_y, constant] = &self.functions[number];
+        let [size_x, size_y] = &self.sizes[number];
+        let [x, y] = &groups.centers;
+        let [reach_x, reach_y] = &groups.extents;
+        let greatest = simd.load16(constant);
+        let greatest = simd.load16(for_y).mul_add(simd.splat16(y[group]), greatest);
+        let greatest = simd.load16(for_x).mul_add(simd.splat16(x[group]), greatest);
+        let greatest = simd.load16(size_y).mul_add(simd.splat16(reach_y[group]), greatest);
+        simd.load16(size_x).mul_add(simd.splat16(reach_x[group]), greatest)
     }
 }
 
