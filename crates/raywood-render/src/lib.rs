@@ -36,6 +36,7 @@ mod rgb_image;
 mod sampling;
 mod shading;
 mod shadows;
+mod sines;
 mod stats;
 mod surface_material;
 mod textured;

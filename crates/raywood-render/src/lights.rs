@@ -40,6 +40,37 @@ impl Lights {
     }
 }
 
+/// A loop over points that asks what a light brings to each.
+pub(crate) trait OverPoints {
+    /// Runs the loop. Must be `#[inline(always)]`.
+    fn run(self, illuminate: impl Fn(Vec3) -> Illumination);
+}
+
+/// Runs a loop with what a light brings to a point, of a round one far away with its middle: one loop for each kind of light, so that none asks at every point which kind it is. Ambient
+/// light brings nothing from anywhere.
+#[inline(always)]
+pub(crate) fn shine(light: &Light, points: impl OverPoints) {
+    let intensity = light.intensity;
+    match light.kind {
+        LightKind::Point { position } => {
+            points.run(|point| from_position(position, point, intensity));
+        }
+        LightKind::Spot { position, direction, cos_inner, cos_outer } => points.run(|point| {
+            let at_point = from_position(position, point, intensity);
+            let share = cone_share(at_point.direction, direction, cos_inner, cos_outer);
+            Illumination {
+                intensity: share * at_point.intensity,
+                shines: at_point.shines & (share > 0.0),
+                ..at_point
+            }
+        }),
+        LightKind::Directional { direction, .. } => {
+            points.run(|_| Illumination { direction: -direction, intensity, shines: true });
+        }
+        LightKind::Ambient => {}
+    }
+}
+
 /// The share of a spot light at its full strength that goes in a direction (from the point to the light); zero outside of its cone. The fall-off
 /// that the glTF extension KHR_lights_punctual recommends.
 #[inline(always)]

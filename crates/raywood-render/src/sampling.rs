@@ -134,7 +134,7 @@ pub(crate) fn owen_scramble_reversed(mut x: u32, seed: u32) -> u32 {
 }
 
 /// A hash in which every input bit reaches every output bit (the finalizer of MurmurHash3).
-#[inline]
+#[inline(always)]
 pub(crate) fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x85eb_ca6b);

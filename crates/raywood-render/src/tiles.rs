@@ -33,6 +33,7 @@ const BLOCK_SIZE: u32 = 4;
 
 impl Tile {
     /// The column and row in the image of the pixel of a number in the tile.
+    #[inline(always)]
     pub(crate) fn place(&self, pixel: u32) -> [u32; 2] {
         [self.x + pixel % TILE_SIZE, self.y + pixel / TILE_SIZE]
     }

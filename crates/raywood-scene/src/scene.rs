@@ -59,6 +59,7 @@ impl Default for Background {
 
 impl Background {
     /// The colour in a direction that rises by `rise` in its length of one: 1 is straight up, 0 level, -1 straight down.
+    #[inline(always)]
     pub fn color(&self, rise: f32) -> Rgb {
         let (end, height) = if rise >= 0.0 { (self.zenith, rise) } else { (self.nadir, -rise) };
         // The square root widens the change near the horizon, as a real sky does.

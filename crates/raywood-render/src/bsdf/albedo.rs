@@ -31,70 +31,84 @@ pub(crate) struct Albedo {
 
 impl Albedo {
     /// Of facets that mirror `f0` straight on, and up to white at grazing angles.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(self, f0: Vec3) -> Vec3 {
         (self.white - self.grazing) * f0 + Vec3::splat(self.grazing)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn times(self, factor: f32) -> Self {
         Self { white: factor * self.white, grazing: factor * self.grazing }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {
         Self { white: self.white + other.white, grazing: self.grazing + other.grazing }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn blend(self, other: Self, share: f32) -> Self {
         let blend = |a: f32, b: f32| a + share * (b - a);
         Self { white: blend(self.white, other.white), grazing: blend(self.grazing, other.grazing) }
     }
 }
 
+/// The albedos of all roughnesses.
+#[derive(Debug)]
+pub(crate) struct AlbedoTable {
+    /// Row after row: one for each roughness, with a column for each cosine.
+    albedos: [Albedo; ROUGHNESSES * COSINES],
+    /// Of each row the mean over all directions.
+    means: [Albedo; ROUGHNESSES],
+}
+
 /// The albedos of one roughness, and their mean over all directions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Albedos {
-    /// Those of the next smoother and rougher row of the table, and the share of the latter.
-    rows: [&'static AlbedoRow; 2],
+    table: &'static AlbedoTable,
+    /// The last row that is not rougher, and the share of the next.
+    row: usize,
     share: f32,
 }
 
-/// A row of the table.
-#[derive(Debug)]
-struct AlbedoRow {
-    columns: Row<Albedo>,
-    mean: Albedo,
+impl AlbedoTable {
+    /// The one that there is.
+    #[inline(always)]
+    pub(crate) fn get() -> &'static Self {
+        &TABLE
+    }
+
+    /// Those of a surface of this alpha.
+    #[inline(always)]
+    pub(crate) fn of_roughness(&'static self, alpha: f32) -> Albedos {
+        let alpha = if alpha < SMOOTHEST { 0.0 } else { alpha };
+        let (row, share) = between(alpha.sqrt(), ROUGHNESSES);
+        Albedos { table: self, row, share }
+    }
 }
 
 impl Albedos {
-    /// Of a surface of this alpha.
-    #[inline]
-    pub(crate) fn of_roughness(alpha: f32) -> Self {
-        let alpha = if alpha < SMOOTHEST { 0.0 } else { alpha };
-        let (below, share) = between(alpha.sqrt(), ROUGHNESSES);
-        Self { rows: [&TABLE[below], &TABLE[below + 1]], share }
-    }
-
     /// Seen at an angle of this cosine.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, cosine: f32) -> Albedo {
-        let (below, share) = between(cosine, COSINES);
-        let [a, b] = self.rows.map(|row| row.columns[below].blend(row.columns[below + 1], share));
+        let (column, share) = between(cosine, COSINES);
+        let all = &self.table.albedos;
+        let (smoother, rougher) = (self.row * COSINES + column, (self.row + 1) * COSINES + column);
+        let a = all[smoother].blend(all[smoother + 1], share);
+        let b = all[rougher].blend(all[rougher + 1], share);
         a.blend(b, self.share)
     }
 
     /// The mean over all directions.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn mean(&self) -> Albedo {
-        let [a, b] = self.rows.map(|row| row.mean);
-        a.blend(b, self.share)
+        let means = &self.table.means;
+        means[self.row].blend(means[self.row + 1], self.share)
     }
 }
 
 /// The last of `count` places from 0 to 1 that is not above a number, and the share of the next.
-#[inline]
+#[inline(always)]
 pub(crate) fn between(number: f32, count: usize) -> (usize, f32) {
     let place = number.clamp(0.0, 1.0) * (count - 1) as f32;
     let below = (place as usize).min(count - 2);
@@ -143,22 +157,27 @@ pub(crate) fn facets(alpha: f32, wo: Vec3) -> impl Iterator<Item = (f32, Albedo)
     })
 }
 
-/// A row for each roughness; made when it is first asked for, in some milliseconds.
-static TABLE: LazyLock<Vec<AlbedoRow>> =
-    LazyLock::new(|| (0..ROUGHNESSES).map(albedo_row).collect());
-
-fn albedo_row(row: usize) -> AlbedoRow {
-    let albedo = |column| {
-        if row == 0 {
-            let cosine = column as f32 / (COSINES - 1) as f32;
-            return Albedo { white: 1.0, grazing: (1.0 - cosine).powi(5) };
-        }
-        let sum = facets(alpha_of(row), direction(column))
-            .fold(Albedo::default(), |sum, (_, mirrored)| sum.plus(mirrored));
-        let share = 1.0 / FACETS as f32;
-        Albedo { white: (share * sum.white).min(1.0), grazing: share * sum.grazing }
+/// Made when it is first asked for, in some milliseconds.
+static TABLE: LazyLock<AlbedoTable> = LazyLock::new(|| {
+    let place = |i: usize| albedo(i / COSINES, i % COSINES);
+    let albedos: [Albedo; _] = std::array::from_fn(place);
+    let mean_of = |row: usize| {
+        let at = |column: usize| albedos[row * COSINES + column];
+        let white = mean(&std::array::from_fn(|column| at(column).white));
+        let grazing = mean(&std::array::from_fn(|column| at(column).grazing));
+        Albedo { white, grazing }
     };
-    let columns: Row<Albedo> = std::array::from_fn(albedo);
-    let [white, grazing] = [columns.map(|a| a.white), columns.map(|a| a.grazing)];
-    AlbedoRow { columns, mean: Albedo { white: mean(&white), grazing: mean(&grazing) } }
+    AlbedoTable { albedos, means: std::array::from_fn(mean_of) }
+});
+
+/// A number of the table.
+fn albedo(row: usize, column: usize) -> Albedo {
+    if row == 0 {
+        let cosine = column as f32 / (COSINES - 1) as f32;
+        return Albedo { white: 1.0, grazing: (1.0 - cosine).powi(5) };
+    }
+    let sum = facets(alpha_of(row), direction(column))
+        .fold(Albedo::default(), |sum, (_, mirrored)| sum.plus(mirrored));
+    let share = 1.0 / FACETS as f32;
+    Albedo { white: (share * sum.white).min(1.0), grazing: share * sum.grazing }
 }

@@ -3,7 +3,7 @@
 //! A layer adds its own light and leaves the rest to what lies below. Of what the mirror there sends on it takes its share on the way in and on the way out, so that light may run either
 //! way; the body below gets all that neither sends back, so that nothing is lost at all. The shares are tables, computed for each pair of roughnesses.
 
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
 use raywood::Vec3;
 use raywood_scene::{Rgb, luminance};
@@ -13,6 +13,7 @@ use super::charlie::Charlie;
 use super::ggx::Ggx;
 use super::layer_table::{COAT, LayerRows, SHEEN};
 use crate::fresnel::schlick;
+use crate::sines::sin_cos_of_turn;
 
 /// What a clear coat mirrors of light straight on: an index of refraction of 1.5.
 pub(crate) const COAT_REFLECTANCE: f32 = 0.04;
@@ -127,7 +128,7 @@ impl Layer {
             }
             // From all sides alike: fibres are brightest where the cosine is least.
             Kind::Sheen(_) => {
-                let (sin, cos) = (TAU * u[0]).sin_cos();
+                let (sin, cos) = sin_cos_of_turn(u[0]);
                 let radius = (1.0 - u[1] * u[1]).sqrt();
                 (Vec3::new(radius * cos, radius * sin, u[1]), None)
             }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use raywood::Vec3;
 
 use super::albedo::{
-    Albedo, Albedos, COSINES, FACETS, ROUGHNESSES, Row, alpha_of, between, facets,
+    Albedo, AlbedoTable, COSINES, FACETS, ROUGHNESSES, Row, alpha_of, between, facets,
 };
 use super::charlie::Charlie;
 use super::layer::COAT_REFLECTANCE;
@@ -47,7 +47,7 @@ pub(crate) struct LayerRows {
 /// That of clear coats, and that of sheen; made when they are first asked for, in about a tenth of a second.
 pub(crate) static COAT: LazyLock<LayerTable> = LazyLock::new(|| {
     LayerTable::new(|alpha, cosine| {
-        Albedos::of_roughness(alpha).at(cosine).of(Vec3::splat(COAT_REFLECTANCE)).x
+        AlbedoTable::get().of_roughness(alpha).at(cosine).of(Vec3::splat(COAT_REFLECTANCE)).x
     })
 });
 pub(crate) static SHEEN: LazyLock<LayerTable> = LazyLock::new(|| LayerTable::new(sheen));

@@ -11,6 +11,8 @@ mod glass;
 mod glass_table;
 mod layer;
 mod layer_table;
+mod mirrored_bodies;
+mod mirrored_body;
 mod opaque;
 mod sample;
 mod stack;
@@ -24,6 +26,7 @@ use raywood_scene::Rgb;
 use glass::Glass;
 pub(crate) use glass_table::GlassTable;
 pub(crate) use layer::COAT_REFLECTANCE;
+pub(crate) use mirrored_bodies::{Answers, MirroredBodies};
 use opaque::Opaque;
 pub(crate) use sample::{Density, Scattered};
 pub(crate) use substance::{Substance, straight_share};
@@ -53,11 +56,6 @@ impl Bsdf {
         });
         let opaque = (glass_share < 1.0).then(|| Opaque::new(opaque, wo));
         Self { opaque, glass, glass_share }
-    }
-
-    /// Whether light from behind may come through.
-    pub(crate) fn is_glass(&self) -> bool {
-        self.glass.is_some()
     }
 
     /// What comes back towards `wo` of light from `wi`, times the cosine there. Perfect mirrors and what bends at smooth surfaces are left out.

@@ -5,7 +5,7 @@
 use raywood::Vec3;
 use raywood_scene::Rgb;
 
-use super::albedo::{Albedo, Albedos, SMOOTHEST};
+use super::albedo::{Albedo, AlbedoTable, Albedos, SMOOTHEST};
 use super::layer::{Coat, Layer, Sheen};
 
 /// A mirror and the layers over it.
@@ -16,7 +16,7 @@ pub(crate) struct Stack {
 }
 
 /// How much light the parts of a stack send back.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Shares {
     /// The layers together.
     pub(crate) layers: f32,
@@ -25,17 +25,21 @@ pub(crate) struct Shares {
 }
 
 impl Shares {
+    /// What counts as lost at least where there are no layers, to divide by.
+    pub(crate) const LEAST_LOST: f32 = 1e-6;
+
     /// What neither sends back if facets mirror everything.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn lost(self) -> f32 {
-        ((1.0 - self.layers) - self.mirror.white).max(0.0)
+        let lost = (1.0 - self.layers) - self.mirror.white;
+        if lost > 0.0 { lost } else { 0.0 }
     }
 }
 
 impl Stack {
     /// Over a mirror with facets of this alpha.
     pub(crate) fn new(alpha: f32, coat: Option<Coat>, sheen: Option<Sheen>) -> Self {
-        let mirror = Albedos::of_roughness(alpha);
+        let mirror = AlbedoTable::get().of_roughness(alpha);
         let is_bare = coat.is_none() && sheen.is_none();
         let layers = if is_bare { [None; 2] } else { layers_over(alpha, coat, sheen) };
         Self { mirror, layers }
@@ -48,7 +52,7 @@ impl Stack {
 
     /// What counts as lost at least, to divide by: below smooth layers nothing is but for what tables round.
     pub(crate) fn least_lost(&self) -> f32 {
-        if self.is_bare() { 1e-6 } else { 3e-3 }
+        if self.is_bare() { Shares::LEAST_LOST } else { 3e-3 }
     }
 
     /// Those that there are.

@@ -3,10 +3,13 @@
 use raywood::Vec3;
 use raywood_scene::Rgb;
 
+use super::frame::cosine_hemisphere;
 use super::layer::{Coat, Sheen};
 use super::opaque::OpaqueSurface;
 use super::*;
 use crate::path_samples::PathSamples;
+use crate::wave::WAVE;
+use crate::wave::columns::{ZERO, get, set};
 
 /// An opaque surface that scatters and mirrors all, and glass that lets all through.
 fn white() -> Substance {
@@ -323,5 +326,45 @@ impl Random {
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         (self.0 >> 40) as f32 * (1.0 / 16_777_216.0)
+    }
+}
+
+/// Surfaces in columns answer and choose as each does by itself.
+#[test]
+fn many_surfaces_do_as_each_does() {
+    let bare: Vec<_> = white_surfaces()
+        .into_iter()
+        .filter(|(_, substance)| substance.glass_share == 0.0 && substance.opaque.is_bare())
+        .collect();
+    let (mut bodies, mut answers) = (MirroredBodies::default(), Answers::default());
+    let (mut wos, mut wis, mut chosen) = (ZERO, ZERO, ZERO);
+    let (mut choices, mut u) = ([[0.0; WAVE]; 2], [[0.0; WAVE]; 2]);
+    for index in 0..32 {
+        let path = PathSamples::new([3, 4], index);
+        for (number, (_, substance)) in bare.iter().enumerate() {
+            let numbers = |decision: u32| path.pair(16 * number as u32 + decision);
+            bodies.set(number, &substance.opaque);
+            set(&mut wos, number, cosine_hemisphere(numbers(0)));
+            // Some come from below.
+            let wi = cosine_hemisphere(numbers(1));
+            set(&mut wis, number, if index % 8 == 0 { -wi } else { wi });
+            choices[0][number] = numbers(2)[0];
+            [u[0][number], u[1][number]] = numbers(3);
+        }
+        bodies.look_from(&wos, bare.len());
+        bodies.answer(&wis, bare.len(), &mut answers);
+        bodies.choose(&choices, &u, bare.len(), &mut chosen);
+        for (number, (name, substance)) in bare.iter().enumerate() {
+            let bsdf = Bsdf::new(substance, get(&wos, number), true, &[]);
+            let wi = get(&wis, number);
+            assert_eq!(get(&answers.light, number), bsdf.eval(wi), "{name}");
+            assert_eq!(answers.densities[number], bsdf.density(wi), "{name}");
+            let scattered = bsdf.sample(choices[0][number], [u[0][number], u[1][number]]);
+            let direction = get(&chosen, number);
+            match scattered {
+                Some(scattered) => assert_eq!(direction, scattered.wi, "{name}"),
+                None => assert!(direction.z <= 0.0, "{name}: {direction:?}"),
+            }
+        }
     }
 }

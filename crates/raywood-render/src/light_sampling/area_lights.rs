@@ -79,12 +79,7 @@ impl AreaLights {
                 let density = per_area * distance * distance / cosine;
                 let radiance = emission_at(scene, &Hit { t: 0.0, u, v, primitive, instance });
                 let is_sound = cosine > 0.0 && density > 0.0 && density.is_finite();
-                is_sound.then_some(LightSample {
-                    direction,
-                    target: Some(target),
-                    radiance,
-                    density,
-                })
+                is_sound.then_some(LightSample { direction, target, radiance, density })
             }
             Which::Sphere(sphere) => {
                 let (center, radius) = scene.scene().spheres.as_slice()[sphere as usize];
@@ -99,12 +94,7 @@ impl AreaLights {
                 let target = point + (along - inside.sqrt()) * direction;
                 let density = per_area * 4.0 * PI * radius * radius / cone.solid_angle();
                 let is_sound = density > 0.0 && density.is_finite();
-                is_sound.then_some(LightSample {
-                    direction,
-                    target: Some(target),
-                    radiance,
-                    density,
-                })
+                is_sound.then_some(LightSample { direction, target, radiance, density })
             }
         }
     }

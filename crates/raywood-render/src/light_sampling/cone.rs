@@ -4,6 +4,8 @@ use std::f32::consts::PI;
 
 use raywood::Vec3;
 
+use crate::sines::sin_cos_of_turn;
+
 /// Directions up to an angle from an axis.
 pub(crate) struct Cone {
     /// One less the cosine of its half angle.
@@ -32,7 +34,7 @@ impl Cone {
     pub(crate) fn sample(&self, axis: Vec3, [u, v]: [f32; 2]) -> Vec3 {
         let below = u * self.height;
         let radius = (below * (2.0 - below)).max(0.0).sqrt();
-        let (sin, cos) = (2.0 * PI * v).sin_cos();
+        let (sin, cos) = sin_cos_of_turn(v);
         let (s, t) = axis.orthonormal_basis();
         (radius * cos) * s + (radius * sin) * t + (1.0 - below) * axis
     }

@@ -7,16 +7,19 @@ use std::f32::consts::{PI, TAU};
 
 use rayon::prelude::*;
 use raywood::Vec3;
-use raywood_scene::{Environment, luminance};
+use raywood_scene::{Axes, Environment, luminance};
 
-use super::{AliasTable, LightSample};
+use super::AliasTable;
 use crate::PreparedScene;
+use crate::sines::sin_cos_of_turn;
 
 /// Light from all around.
 pub(crate) struct EnvironmentLight {
     columns: usize,
     rows: usize,
     table: AliasTable,
+    /// The heights of the upper edges of the rows, and of the lower edge of the last.
+    heights: Vec<f32>,
     /// Of each part, row after row from the top, the density of its directions by solid angle.
     densities: Vec<f32>,
 }
@@ -42,35 +45,59 @@ impl EnvironmentLight {
         let density =
             |i: usize| weights[i] / (table.total() * solid_angle(i / columns, rows, columns));
         let densities = (0..weights.len()).map(|i| density(i) as f32).collect();
-        Some(Self { columns, rows, table, densities })
+        let height = |row: usize| (PI * row as f32 / rows as f32).cos();
+        let heights = (0..=rows).map(height).collect();
+        Some(Self { columns, rows, table, heights, densities })
     }
 
-    /// Chooses a direction; `choice` and `u` are random numbers.
-    pub(crate) fn sample(
-        &self,
-        scene: &PreparedScene<'_>,
-        choice: f32,
-        [u, v]: [f32; 2],
-    ) -> LightSample {
+    /// Chooses a part of the sphere; `choice` is a random number.
+    #[inline(always)]
+    pub(crate) fn choose(&self, choice: f32) -> SpherePart {
         let part = self.table.choose(choice);
-        let (row, column) = (part / self.columns, part % self.columns);
-        // Evenly by solid angle: the height is, not the angle.
-        let height = |row: usize| (PI * row as f32 / self.rows as f32).cos();
-        let (top, bottom) = (height(row), height(row + 1));
-        let z = top + u * (bottom - top);
-        let turn = (column as f32 + v) / self.columns as f32;
-        let direction = scene.axes().to_world(from_height(z, turn));
-        let radiance = scene.background(direction);
-        LightSample { direction, target: None, radiance, density: self.densities[part] }
+        // Most backgrounds have one column, and a division is slow.
+        let (row, column) = match self.columns {
+            1 => (part, 0),
+            columns => (part / columns, part % columns),
+        };
+        SpherePart {
+            top: self.heights[row],
+            bottom: self.heights[row + 1],
+            column: column as f32,
+            density: self.densities[part],
+        }
     }
 
-    /// The density with which [`sample`](Self::sample) chooses a direction.
+    /// A direction within a part; `u` are random numbers. Without branches and calls, so that a loop over many becomes vectors.
+    #[inline(always)]
+    pub(crate) fn direction(&self, axes: &Axes, part: SpherePart, [u, v]: [f32; 2]) -> Vec3 {
+        // Evenly by solid angle: the height is, not the angle.
+        let z = part.top + u * (part.bottom - part.top);
+        let turn = (part.column + v) / self.columns as f32;
+        axes.to_world(from_height(z, turn))
+    }
+
+    /// The density with which a direction is chosen.
     pub(crate) fn density(&self, scene: &PreparedScene<'_>, direction: Vec3) -> f32 {
-        let [v, u] = to_angles(scene.axes().to_local(direction));
-        let row = ((v * self.rows as f32) as usize).min(self.rows - 1);
+        let direction = scene.axes().to_local(direction);
+        let row = ((way_down(direction) * self.rows as f32) as usize).min(self.rows - 1);
+        if self.columns == 1 {
+            return self.densities[row];
+        }
+        let [_, u] = to_angles(direction);
         let column = ((u * self.columns as f32) as usize).min(self.columns - 1);
         self.densities[row * self.columns + column]
     }
+}
+
+/// A part of the sphere between two heights.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SpherePart {
+    pub(crate) top: f32,
+    pub(crate) bottom: f32,
+    /// Which of those in its row.
+    pub(crate) column: f32,
+    /// The density of its directions by solid angle; above zero.
+    pub(crate) density: f32,
 }
 
 /// The solid angle of a part.
@@ -117,17 +144,24 @@ fn brightness_of_panorama(panorama: &Environment) -> ([usize; 2], Vec<f32>) {
 }
 
 /// The direction of a height, and a share of the way around, from the left edge of a panorama to the right.
+#[inline(always)]
 fn from_height(z: f32, turn: f32) -> Vec3 {
-    let radius = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = (TAU * (turn - 0.5)).sin_cos();
+    let squared = 1.0 - z * z;
+    let radius = if squared > 0.0 { squared.sqrt() } else { 0.0 };
+    let (sin, cos) = sin_cos_of_turn(turn - 0.5);
     Vec3::new(radius * sin, -radius * cos, z)
 }
 
 /// The shares of the ways down and around at which a direction is.
 #[inline]
 pub(crate) fn to_angles(direction: Vec3) -> [f32; 2] {
-    let down = direction.z.clamp(-1.0, 1.0).acos() / PI;
-    [down, 0.5 + direction.x.atan2(-direction.y) / TAU]
+    [way_down(direction), 0.5 + direction.x.atan2(-direction.y) / TAU]
+}
+
+/// The share of the way down at which a direction is.
+#[inline]
+fn way_down(direction: Vec3) -> f32 {
+    direction.z.clamp(-1.0, 1.0).acos() / PI
 }
 
 #[cfg(test)]
@@ -168,11 +202,13 @@ mod tests {
             let (mut sum, mut in_all, mut evenly) = (0.0f64, 0.0f64, 0.0f64);
             for index in 0..count {
                 let path = PathSamples::new([0, 0], index);
-                let sample = light.sample(&prepared, path.pair(0)[0], path.pair(1));
-                let density = light.density(&prepared, sample.direction);
+                let part = light.choose(path.pair(0)[0]);
+                let direction = light.direction(prepared.axes(), part, path.pair(1));
+                let density = light.density(&prepared, direction);
                 // On the border of two parts it may count as one of the other.
-                others += u32::from((density / sample.density - 1.0).abs() > 1e-3);
-                sum += f64::from(luminance(sample.radiance) / sample.density);
+                others += u32::from((density / part.density - 1.0).abs() > 1e-3);
+                let radiance = prepared.background(direction);
+                sum += f64::from(luminance(radiance) / part.density);
                 let [u, v] = path.pair(2);
                 let even = prepared.axes().to_world(from_height(1.0 - 2.0 * u, v));
                 evenly += f64::from(luminance(prepared.background(even)));

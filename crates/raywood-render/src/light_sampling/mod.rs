@@ -12,15 +12,15 @@ use raywood_scene::Rgb;
 pub(crate) use alias_table::AliasTable;
 pub(crate) use area_lights::{AreaLights, Lit};
 pub(crate) use cone::Cone;
-pub(crate) use environment::{EnvironmentLight, to_angles};
+pub(crate) use environment::{EnvironmentLight, SpherePart, to_angles};
 
-/// Where light comes from.
+/// A point that light comes from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightSample {
     /// Towards the light, unit length.
     pub(crate) direction: Vec3,
-    /// The point on the light; `None` if it is infinitely far away.
-    pub(crate) target: Option<Vec3>,
+    /// The point on the light.
+    pub(crate) target: Vec3,
     /// How bright the light is there: radiance, in units in which a white diffuse surface in a surrounding of 1 is 1.
     pub(crate) radiance: Rgb,
     /// How likely the direction was, by solid angle; above zero.

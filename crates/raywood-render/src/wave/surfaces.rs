@@ -107,22 +107,42 @@ impl Surfaces {
         self.distances[number]
     }
 
-    /// A surface by itself.
+    /// The point that was hit.
     #[inline(always)]
-    pub(crate) fn get<'a>(&'a self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
-        let direction = get(&self.directions, number);
-        let point = SurfacePoint {
+    pub(crate) fn point(&self, number: usize) -> SurfacePoint {
+        SurfacePoint {
             position: get(&self.positions, number),
             normal: get(&self.own_normals, number),
             clearance: self.clearances[number],
-        };
+        }
+    }
+
+    /// Whether a ray came from the side that the surface's own normal points to.
+    #[inline(always)]
+    pub(crate) fn outside(&self, number: usize) -> bool {
+        is_outside(get(&self.directions, number), get(&self.own_normals, number))
+    }
+
+    /// The material there.
+    #[inline(always)]
+    pub(crate) fn material<'a>(
+        &'a self,
+        scene: &'a PreparedScene<'_>,
+        number: usize,
+    ) -> &'a SurfaceMaterial {
+        match self.materials[number].checked_sub(scene.material_count()) {
+            None => scene.material(self.materials[number]),
+            Some(own) => &self.textured[own as usize],
+        }
+    }
+
+    /// A surface by itself.
+    #[inline(always)]
+    pub(crate) fn get<'a>(&'a self, scene: &'a PreparedScene<'_>, number: usize) -> Surface<'a> {
         Surface {
-            outside: is_outside(direction, point.normal),
-            point,
-            material: match self.materials[number].checked_sub(scene.material_count()) {
-                None => scene.material(self.materials[number]),
-                Some(own) => &self.textured[own as usize],
-            },
+            outside: self.outside(number),
+            point: self.point(number),
+            material: self.material(scene, number),
             geometric_normal: get(&self.geometric_normals, number),
             normal: get(&self.normals, number),
             diffuse: get(&self.diffuse, number),
@@ -239,26 +259,30 @@ impl Surfaces {
             self.distances[count] = hit.t;
             self.weights[0][count] = hit.u;
             self.weights[1][count] = hit.v;
-            self.materials[count] = scene.material_index(&hit) as u32;
             set(&mut self.directions, count, wave.direction(ray));
-            let corners = match scene.which(hit.primitive) {
-                Which::Triangle(triangle) => mesh.triangles.triangles()[triangle as usize],
-                Which::Sphere(_) => [u32::MAX; 3],
-            };
-            let positions = mesh.triangles.positions();
-            for (corner, &vertex) in corners.iter().enumerate() {
-                let position = positions.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
-                set(&mut self.corners[corner], count, position);
-            }
-            if !mesh.normals.is_empty() {
-                for (corner, &vertex) in corners.iter().enumerate() {
-                    let normal = mesh.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
-                    set(&mut self.corner_normals[corner], count, normal);
-                }
-            }
             count += 1;
         }
         self.count = count;
+
+        // One array after the other, so that the waits for memory overlap.
+        let count = self.count();
+        let mut corners = [[0; WAVE]; 3];
+        for number in 0..count {
+            self.materials[number] = scene.material_index(self.element(number)) as u32;
+        }
+        for number in 0..count {
+            let triangle = match scene.which(self.primitives[number]) {
+                Which::Triangle(triangle) => mesh.triangles.triangles()[triangle as usize],
+                Which::Sphere(_) => [u32::MAX; 3],
+            };
+            for (corners, vertex) in corners.iter_mut().zip(triangle) {
+                corners[number] = vertex;
+            }
+        }
+        gather_vertices(mesh.triangles.positions(), &corners, count, &mut self.corners);
+        if !mesh.normals.is_empty() {
+            gather_vertices(&mesh.normals, &corners, count, &mut self.corner_normals);
+        }
         if scene.has_instances() {
             self.place(scene);
         }
@@ -368,6 +392,22 @@ impl Surfaces {
                     set(&mut self.diffuse, number, diffuse);
                 }
             }
+        }
+    }
+}
+
+/// Gathers what a mesh has at the corners of triangles; zeros where it has nothing.
+#[inline(always)]
+fn gather_vertices(
+    vertices: &[Vec3],
+    corners: &[[u32; WAVE]; 3],
+    count: usize,
+    gathered: &mut [Columns; 3],
+) {
+    for (corners, gathered) in corners.iter().zip(gathered) {
+        for (number, &vertex) in corners[..count].iter().enumerate() {
+            let found = vertices.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
+            set(gathered, number, found);
         }
     }
 }

@@ -15,7 +15,7 @@ pub(super) enum Strategy {
 
 impl Strategy {
     /// The weight of light that was asked, where the density of that is `light`, and that of a scattered ray into the same direction is `scattering`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weight_of_light(self, light: f32, scattering: f32) -> f32 {
         match self {
             Self::Both => power(light, scattering),
@@ -36,7 +36,7 @@ impl Strategy {
 }
 
 /// The power heuristic with exponent two (Veach 1997, section 9.2.4).
-#[inline]
+#[inline(always)]
 fn power(own: f32, other: f32) -> f32 {
     // By the ratio, whose square cannot overflow where that matters.
     let ratio = other / own;

@@ -8,11 +8,13 @@
 //! Paths are followed in waves: a ray of each pixel of a square, then whatever waits, thousands at a time (after Laine, Karras and Aila, "Megakernels Considered
 //! Harmful", 2013).
 
+mod dice;
 mod direct;
 mod heuristic;
 mod picture;
 mod scatter;
 mod shadow_rays;
+mod vertices;
 mod walks;
 mod waves;
 

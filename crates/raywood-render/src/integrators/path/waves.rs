@@ -2,9 +2,12 @@
 
 use raywood::{Hit, HitColumns, SimdLevel};
 
+use super::dice::{Dice, Pairs};
+use super::direct::{AskLights, Asked};
 use super::picture::Picture;
-use super::scatter::Scatterer;
+use super::scatter::{Arrive, GoOn, GoOnMemory, Outlets};
 use super::shadow_rays::ShadowRays;
+use super::vertices::Vertices;
 use super::walks::{Primary, Walked, Walks};
 use crate::integrators::Frame;
 use crate::stats::RayCounts;
@@ -23,9 +26,33 @@ pub(super) struct Scratch {
     waiting: Walks,
     wave: Walks,
     hits: Vec<Option<Hit>>,
+    scattering: ScatterMemory,
+    shadows: ShadowRays,
+}
+
+/// The memory that it takes to have paths scatter.
+struct ScatterMemory {
     surfaces: Box<Surfaces>,
     textures: Box<TextureMemory>,
-    shadows: ShadowRays,
+    vertices: Box<Vertices>,
+    dice: Box<Dice>,
+    straight: Box<Pairs>,
+    asked: Box<Asked>,
+    go_on: Box<GoOnMemory>,
+}
+
+impl Default for ScatterMemory {
+    fn default() -> Self {
+        Self {
+            surfaces: Box::default(),
+            textures: Box::default(),
+            vertices: Box::default(),
+            dice: Box::default(),
+            straight: Box::new([[0.0; WAVE]; 2]),
+            asked: Box::default(),
+            go_on: Box::default(),
+        }
+    }
 }
 
 /// Follows the paths of a tile, a wave of rays at a time, and adds up the light that they bring.
@@ -49,7 +76,8 @@ impl<'a> Waves<'a> {
         // A picture that was stopped may have left some.
         scratch.waiting.clear();
         scratch.shadows.clear();
-        scratch.surfaces.keep_what_all_is_made_of();
+        scratch.scattering.surfaces.keep_what_all_is_made_of();
+        scratch.scattering.dice.set_seed(picture.frame.options.seed);
         let tracer = picture.frame.scene.tracer();
         let level = tracer.simd_level().unwrap_or_else(SimdLevel::active);
         Self { picture, tile, pixels, counts: RayCounts::default(), level, scratch }
@@ -92,18 +120,13 @@ impl<'a> Waves<'a> {
         primary.trace(self.picture.frame, sample, self.level, hits);
         let eye = self.picture.frame.camera.eye();
 
-        let Scratch { primary, primary_hits: hits, waiting, surfaces, textures, shadows, .. } =
+        let Scratch { primary, primary_hits: hits, waiting, scattering, shadows, .. } =
             &mut *self.scratch;
         let traced = TracedPrimary { eye, primary, hits };
-        let scatterer = Scatterer {
-            picture: self.picture,
-            tile: self.tile,
-            pixels: self.pixels,
-            counts: &mut self.counts,
-            waiting,
-            shadows,
-        };
-        scatter(scatterer, &Primary { traced, sample }, (surfaces, textures), self.level);
+        let (picture, pixels, counts) = (self.picture, &mut *self.pixels, &mut self.counts);
+        let outlets = Outlets { picture, pixels, counts, waiting };
+        let wave = Primary { traced, sample };
+        scatter(outlets, self.tile, &wave, scattering, shadows, self.level);
     }
 
     /// Traces rays that wait, and has their paths scatter.
@@ -114,36 +137,36 @@ impl<'a> Waves<'a> {
         self.picture.frame.scene.tracer().intersect_batch(&wave.rays, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
-            let Scratch { waiting, wave, hits, surfaces, textures, shadows, .. } =
-                &mut *self.scratch;
+            let Scratch { waiting, wave, hits, scattering, shadows, .. } = &mut *self.scratch;
             let part = first..hits.len().min(first + WAVE);
-            let scatterer = Scatterer {
-                picture: self.picture,
-                tile: self.tile,
-                pixels: self.pixels,
-                counts: &mut self.counts,
-                waiting,
-                shadows,
-            };
-            scatter(scatterer, &wave.traced(hits, part), (surfaces, textures), self.level);
+            let (picture, pixels, counts) = (self.picture, &mut *self.pixels, &mut self.counts);
+            let outlets = Outlets { picture, pixels, counts, waiting };
+            let wave = wave.traced(hits, part);
+            scatter(outlets, self.tile, &wave, scattering, shadows, self.level);
         }
     }
 }
 
 /// Has the paths of a wave scatter, and traces shadow rays if enough wait.
 fn scatter(
-    mut scatterer: Scatterer<'_>,
+    mut outlets: Outlets<'_>,
+    tile: &Tile,
     wave: &impl Walked,
-    (surfaces, textures): (&mut Surfaces, &mut TextureMemory),
+    memory: &mut ScatterMemory,
+    shadows: &mut ShadowRays,
     level: SimdLevel,
 ) {
-    let Frame { scene, .. } = scatterer.picture.frame;
-    let spread = scatterer.picture.frame.spread();
-    let (found, miss) = (&mut *surfaces, |ray| scatterer.miss(wave, ray));
+    let ScatterMemory { surfaces, textures, vertices, dice, straight, asked, go_on } = memory;
+    let picture = outlets.picture;
+    let Frame { scene, .. } = picture.frame;
+    let spread = picture.frame.spread();
+    let (found, miss) = (&mut **surfaces, |ray| outlets.miss(wave, ray));
     level.run(FindSurfaces { scene, wave, surfaces: found, textures, spread, level, miss });
-    for number in 0..surfaces.count() {
-        scatterer.scatter(wave, surfaces, number);
-    }
-    let Scatterer { picture, pixels, counts, shadows, .. } = scatterer;
-    shadows.trace(picture, TRACED, pixels, counts);
+
+    let (surfaces, vertices) = (&**surfaces, &mut **vertices);
+    let (outlets, straight) = (&mut outlets, &mut **straight);
+    level.run(Arrive { outlets, tile, wave, surfaces, vertices, dice, pairs: straight });
+    level.run(AskLights { picture, surfaces, vertices, dice, asked, shadows });
+    level.run(GoOn { outlets, surfaces, vertices, dice, straight, memory: go_on });
+    shadows.trace(picture, TRACED, outlets.pixels, outlets.counts);
 }

@@ -1,9 +1,9 @@
 //! The points of a wave that lights may reach, in columns: what one light brings to all of them is computed with vectors.
 
 use raywood::{Vec3, Vectorized};
-use raywood_scene::{Light, LightKind, Rgb};
+use raywood_scene::{Light, Rgb};
 
-use crate::lights::{Illumination, cone_share, from_position};
+use crate::lights::{Illumination, OverPoints, shine};
 use crate::power::power;
 use crate::shading::light_cosine;
 use crate::wave::WAVE;
@@ -91,32 +91,13 @@ impl Vectorized for SendShadowRays<'_> {
 
     #[inline(always)]
     fn run(self) {
-        // One loop for each kind of light, so that none asks at every point which kind it is.
-        let intensity = self.light.intensity;
-        match self.light.kind {
-            LightKind::Point { position } => {
-                self.send(|point| from_position(position, point, intensity));
-            }
-            LightKind::Spot { position, direction, cos_inner, cos_outer } => self.send(|point| {
-                let at_point = from_position(position, point, intensity);
-                let share = cone_share(at_point.direction, direction, cos_inner, cos_outer);
-                Illumination {
-                    intensity: share * at_point.intensity,
-                    shines: at_point.shines & (share > 0.0),
-                    ..at_point
-                }
-            }),
-            LightKind::Directional { direction, .. } => {
-                self.send(|_| Illumination { direction: -direction, intensity, shines: true });
-            }
-            LightKind::Ambient => {}
-        }
+        shine(self.light, self);
     }
 }
 
-impl SendShadowRays<'_> {
+impl OverPoints for SendShadowRays<'_> {
     #[inline(always)]
-    fn send(self, illuminate: impl Fn(Vec3) -> Illumination) {
+    fn run(self, illuminate: impl Fn(Vec3) -> Illumination) {
         let Self { surfaces, points, shadows, .. } = self;
         let count = surfaces.count();
 
