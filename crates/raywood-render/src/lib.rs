@@ -21,6 +21,7 @@ mod layers;
 mod lens;
 mod light_sampling;
 mod lights;
+mod opacities;
 mod options;
 mod part;
 mod passes;

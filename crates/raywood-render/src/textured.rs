@@ -36,6 +36,8 @@ pub(crate) struct Layer<'a> {
     pub(crate) slot: Slot,
     pub(crate) texture: &'a Texture,
     pub(crate) image: &'a TextureImage,
+    /// Where the texture finds the image's texels.
+    pub(crate) grid: TexelGrid,
     /// Whether it is read where the one before is.
     pub(crate) follows: bool,
 }
@@ -96,7 +98,8 @@ impl<'a> TexturedMaterial<'a> {
         ];
         let with_image = |(slot, texture): (Slot, Option<&'a Texture>)| {
             let image = images.get(texture?.image as usize)?;
-            Some(Layer { slot, texture: texture?, image, follows: false })
+            let grid = TexelGrid::new(texture?, [image.width(), image.height()]);
+            Some(Layer { slot, texture: texture?, image, grid, follows: false })
         };
         let mut layers: Vec<_> = named.into_iter().filter_map(with_image).collect();
         for second in 1..layers.len() {
@@ -107,21 +110,32 @@ impl<'a> TexturedMaterial<'a> {
         Some(Self { material, textures, layers, is_perforated, has_textured_layers })
     }
 
+    /// The texture for something, if it has one.
+    #[inline]
+    pub(crate) fn layer(&self, slot: Slot) -> Option<&Layer<'a>> {
+        self.layers.iter().find(|layer| layer.slot == slot)
+    }
+
+    /// How much of a surface is there where its colour and its map of opacity show this.
+    #[inline(always)]
+    pub(crate) fn opacity(&self, color: [f32; 4], map: [f32; 4]) -> f32 {
+        let Some(factor) = self.textures.opacity else { return 1.0 };
+        let [r, g, b, _] = map;
+        (factor * color[3] * ((r + g + b) / 3.0)).clamp(0.0, 1.0)
+    }
+
     /// The texture that gives normals, and by how much it bends them.
     pub(crate) fn normal(&self) -> Option<(&'a Texture, f32)> {
         let (texture, scale) = self.textures.normal.as_ref()?;
-        let has_image = self.layers.iter().any(|layer| layer.slot == Slot::Normal);
-        has_image.then_some((texture, *scale))
+        self.layer(Slot::Normal).map(|_| (texture, *scale))
     }
 
     /// The light that it sends out in the mean over its texture, if it has one.
     pub(crate) fn mean_emission(&self) -> Rgb {
-        let layer = self.layers.iter().find(|layer| layer.slot == Slot::Emission);
-        let mean = layer.map_or(Rgb::ONE, |layer| {
+        let mean = self.layer(Slot::Emission).map_or(Rgb::ONE, |layer| {
             // The last level is one texel, the mean of all.
-            let grid = TexelGrid::new(layer.texture, [layer.image.width(), layer.image.height()]);
             let last = layer.image.last_level();
-            rgb(layer.image.show(last, &grid.blend(last, [0.5; 2])))
+            rgb(layer.image.show(last, &layer.grid.blend(last, [0.5; 2])))
         });
         self.material.emission * mean
     }
@@ -149,7 +163,7 @@ impl<'a> TexturedMaterial<'a> {
         vertex_color: Rgb,
     ) -> Option<MetallicRoughness> {
         let of = |slot: Slot| shown[slot as usize];
-        found.opacity = opacity(self.textures, shown);
+        found.opacity = self.opacity(of(Slot::Color), of(Slot::OpacityMap));
         found.emission = found.emission * rgb(of(Slot::Emission));
         if let Some((_, strength)) = &self.textures.occlusion {
             found.ambient = 1.0 + strength * (of(Slot::Occlusion)[0] - 1.0);
@@ -198,25 +212,20 @@ fn is_perforated(textures: &SurfaceTextures, layers: &[Layer<'_>]) -> bool {
     opacity < 1.0 || layers.iter().any(has_holes)
 }
 
-/// How much of a surface is there.
-#[inline(always)]
-fn opacity(textures: &SurfaceTextures, shown: &Shown) -> f32 {
-    let Some(factor) = textures.opacity else { return 1.0 };
-    let [r, g, b, _] = shown[Slot::OpacityMap as usize];
-    let alpha = shown[Slot::Color as usize][3];
-    (factor * alpha * ((r + g + b) / 3.0)).clamp(0.0, 1.0)
-}
-
 #[inline(always)]
 fn rgb([r, g, b, _]: [f32; 4]) -> Rgb {
     Rgb::new(r, g, b)
 }
 
-/// How much of a surface is there at a hit, as close up: for shadow rays.
+fn opacity_of(material: &TexturedMaterial<'_>, shown: &Shown) -> f32 {
+    material.opacity(shown[Slot::Color as usize], shown[Slot::OpacityMap as usize])
+}
+
+/// How much of a surface is there at a hit, as close up. For many hits see [`Opacities`](crate::opacities::Opacities).
 pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
     let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap);
     show_close_up(scene, hit, is_wanted)
-        .map_or(1.0, |(material, shown)| opacity(material.textures, &shown))
+        .map_or(1.0, |(material, shown)| opacity_of(material, &shown))
 }
 
 /// The light that a surface sends out at a hit, as close up: for whoever chooses points on lights. What is not there sends out none.
@@ -224,7 +233,7 @@ pub(crate) fn emission_at(scene: &PreparedScene<'_>, hit: &Hit) -> Rgb {
     let whole = scene.material_of(hit).emission;
     let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap | Slot::Emission);
     show_close_up(scene, hit, is_wanted).map_or(whole, |(material, shown)| {
-        opacity(material.textures, &shown) * (whole * rgb(shown[Slot::Emission as usize]))
+        opacity_of(material, &shown) * (whole * rgb(shown[Slot::Emission as usize]))
     })
 }
 
@@ -239,14 +248,11 @@ fn show_close_up<'a>(
     let mesh = &scene.scene().mesh;
     let corners = mesh.triangles.triangles()[triangle as usize];
     let mut shown = [[1.0; 4]; _];
-    for Layer { slot, texture, image, .. } in &material.layers {
+    for Layer { slot, texture, image, grid, .. } in &material.layers {
         if is_wanted(*slot) {
             let coordinates = &mesh.texture_coordinates[usize::from(texture.set.min(1))];
-            let at = |i: usize| coordinates.get(corners[i] as usize).copied().unwrap_or([0.0; 2]);
-            let (a, b, c) = (at(0), at(1), at(2));
-            let along = |i: usize| a[i] + hit.u * (b[i] - a[i]) + hit.v * (c[i] - a[i]);
-            let point = texture.transform.point([along(0), along(1)]);
-            shown[*slot as usize] = image.show_close_up(texture, point);
+            let point = texture.point_on(coordinates, corners, [hit.u, hit.v]);
+            shown[*slot as usize] = image.show(0, &grid.blend(0, point));
         }
     }
     Some((material, shown))

@@ -29,6 +29,21 @@ impl Texture {
             magnification: Magnification::Linear,
         }
     }
+
+    /// Where on the image a point of a triangle lies, with `weights` of its second and third corner. `coordinates` are the mesh's texture coordinates; zero where there
+    /// are none.
+    #[inline]
+    pub fn point_on(
+        &self,
+        coordinates: &[[f32; 2]],
+        corners: [u32; 3],
+        weights: [f32; 2],
+    ) -> [f32; 2] {
+        let at = |i: usize| coordinates.get(corners[i] as usize).copied().unwrap_or([0.0; 2]);
+        let (a, b, c) = (at(0), at(1), at(2));
+        let along = |i: usize| a[i] + weights[0] * (b[i] - a[i]) + weights[1] * (c[i] - a[i]);
+        self.transform.point([along(0), along(1)])
+    }
 }
 
 /// What lies beyond an image's edges.

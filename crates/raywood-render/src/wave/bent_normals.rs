@@ -4,7 +4,7 @@ use raywood::Vec3;
 use raywood_scene::Texture;
 
 use super::WAVE;
-use super::columns::{Columns, ZERO, get, set};
+use super::columns::{Columns, ZERO, get, set, whole_vectors};
 use super::footprints::Footprints;
 use super::surfaces::Surfaces;
 use crate::PreparedScene;
@@ -24,7 +24,7 @@ pub(crate) fn bend_normals(
     numbers: &[u8],
     shown: &[Shown],
 ) {
-    let count = numbers.len().min(WAVE);
+    let count = whole_vectors(numbers.len());
     let (mut given, mut signs) = (ZERO, [0.0; WAVE]);
     gather_tangents(scene, surfaces, numbers, &mut given, &mut signs);
     let mut edges = [ZERO; 2];

@@ -4,10 +4,10 @@
 //! image at which a texel is as large as a part of the ellipse (as "Feline" does: McCormack et al. 1999). So what is far away does not shimmer, and what is
 //! seen from its edge is not blurred across. Numbers are read once.
 
-use raywood_scene::{TexelBlend, TexelGrid, Texture, blend_levels};
+use raywood_scene::{TexelBlend, Texture, blend_levels};
 
 use super::WAVE;
-use super::columns::Column;
+use super::columns::{Column, whole_vectors};
 use super::footprints::Footprints;
 use crate::ray_cone::rough_log2;
 use crate::textured::{Layer, Shown, TexturedMaterial};
@@ -28,6 +28,8 @@ pub(crate) struct TextureReads {
     /// Texels of the finer level and of the next.
     finer: Blends,
     coarser: Blends,
+    /// These texels as they lie in memory.
+    fetched: [[[[u8; 4]; 4]; WAVE]; 2],
 }
 
 /// Blends of texels in columns.
@@ -52,13 +54,15 @@ impl Blends {
     }
 
     #[inline(always)]
-    fn get(&self, number: usize) -> TexelBlend {
+    fn texels(&self, number: usize) -> [u32; 4] {
         let [a, b, c, d] = &self.texels;
-        let [e, f, g, h] = &self.shares;
-        TexelBlend {
-            texels: [a[number], b[number], c[number], d[number]],
-            shares: [e[number], f[number], g[number], h[number]],
-        }
+        [a[number], b[number], c[number], d[number]]
+    }
+
+    #[inline(always)]
+    fn shares(&self, number: usize) -> [f32; 4] {
+        let [a, b, c, d] = &self.shares;
+        [a[number], b[number], c[number], d[number]]
     }
 }
 
@@ -72,6 +76,7 @@ impl Default for TextureReads {
             shares: [0.0; WAVE],
             finer: Blends::default(),
             coarser: Blends::default(),
+            fetched: [[[[0; 4]; 4]; WAVE]; 2],
         }
     }
 }
@@ -103,7 +108,7 @@ impl TextureReads {
         let Texture { transform, .. } = layer.texture;
         let (width, height) = (layer.image.width() as f32, layer.image.height() as f32);
         let last = layer.image.last_level();
-        let count = numbers.len().min(WAVE);
+        let count = whole_vectors(numbers.len());
 
         // Gather, so that the rest is columns.
         let mut along = [[0.0; WAVE]; 2];
@@ -160,9 +165,8 @@ impl TextureReads {
     fn read_group(&mut self, group: &[Layer<'_>], shown: &mut [Shown]) {
         let [first, ..] = group else { return };
         let count = shown.len().min(WAVE);
-        let size = [first.image.width(), first.image.height()];
-        let grid = TexelGrid::new(first.texture, size);
-        let Self { points, axes, reads, levels, shares, finer, coarser } = self;
+        let grid = first.grid;
+        let Self { points, axes, reads, levels, shares, finer, coarser, fetched } = self;
         let most = reads[..count].iter().fold(1.0f32, |a, &b| if a > b { a } else { b });
         for read in 0..(most as usize).min(MOST_READS) {
             // Where this reading is, of all that there are along the ellipse.
@@ -171,30 +175,52 @@ impl TextureReads {
                 let u = points[0][place] + along * axes[0][place];
                 [u, points[1][place] + along * axes[1][place]]
             };
-            for (place, level) in levels[..count].iter().enumerate() {
+            let whole = whole_vectors(count);
+            for (place, level) in levels[..whole].iter().enumerate() {
                 finer.set(place, &grid.blend(*level, point(place)));
             }
             if first.is_color() {
-                for (place, level) in levels[..count].iter().enumerate() {
+                for (place, level) in levels[..whole].iter().enumerate() {
                     coarser.set(place, &grid.blend(*level + 1, point(place)));
                 }
             }
 
+            // Those that are read so often.
+            let mut places = [0u8; WAVE];
+            let mut wanted = 0;
+            for (place, &reads) in reads[..count].iter().enumerate() {
+                places[wanted] = place as u8;
+                wanted += usize::from((read as f32) < reads);
+            }
+            let places = places[..wanted].iter().map(|&place| usize::from(place));
+
             for layer in group {
-                for (place, shown) in shown.iter_mut().enumerate() {
-                    if read as f32 >= reads[place] {
-                        continue;
+                // Fetch all texels before any is needed: most are far from each other, and waits for memory overlap.
+                let (image, [near, far]) = (layer.image, &mut *fetched);
+                for place in places.clone() {
+                    near[place] = image.fetch(levels[place], finer.texels(place));
+                }
+                if first.is_color() {
+                    for place in places.clone() {
+                        // Where one level is enough, any texel will do.
+                        let next = u32::from(shares[place] > 0.0);
+                        let [a, b, c, d] = coarser.texels(place);
+                        let texels = [next * a, next * b, next * c, next * d];
+                        far[place] = image.fetch(levels[place] + next, texels);
                     }
+                }
+
+                for place in places.clone() {
                     let (level, share) = (levels[place], shares[place]);
-                    let mut color = layer.image.show(level, &finer.get(place));
+                    let mut color = image.mix(level, near[place], finer.shares(place));
                     if share > 0.0 {
-                        let next = layer.image.show(level + 1, &coarser.get(place));
+                        let next = image.mix(level + 1, far[place], coarser.shares(place));
                         for channel in 0..4 {
                             color[channel] += share * (next[channel] - color[channel]);
                         }
                     }
                     let weight = 1.0 / reads[place];
-                    let sum = &mut shown[layer.slot as usize];
+                    let sum = &mut shown[place][layer.slot as usize];
                     for channel in 0..4 {
                         let before = if read == 0 { 0.0 } else { sum[channel] };
                         sum[channel] = before + weight * color[channel];

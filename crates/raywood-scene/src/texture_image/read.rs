@@ -144,14 +144,28 @@ impl TextureImage {
     /// If the blend is one of a larger image, or of another level.
     #[inline(always)]
     pub fn show(&self, level: u32, blend: &TexelBlend) -> [f32; 4] {
-        let decoder = &*DECODER;
-        let colors = decoder.color(self.encoding);
-        let start = self.levels[level as usize].start;
-        let texels = &self.texels[start..];
+        self.mix(level, self.fetch(level, blend.texels), blend.shares)
+    }
+
+    /// Texels of a level by their numbers, as they lie in memory: for whoever reads many points of large images, and has them all fetched before the first is
+    /// needed, so that the waits for memory overlap.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such level, or if it has not as many texels.
+    #[inline(always)]
+    pub fn fetch(&self, level: u32, texels: [u32; 4]) -> [[u8; 4]; 4] {
+        let all = &self.texels[self.levels[level as usize].start..];
+        let [a, b, c, d] = texels;
+        [all[a as usize], all[b as usize], all[c as usize], all[d as usize]]
+    }
+
+    /// What texels show that were [fetched](Self::fetch) from a level, blended in these shares: see [`show`](Self::show).
+    #[inline(always)]
+    pub fn mix(&self, level: u32, texels: [[u8; 4]; 4], shares: [f32; 4]) -> [f32; 4] {
+        let colors = DECODER.color(self.encoding);
         let mut sum = [0.0; 4];
-        for corner in 0..4 {
-            let [r, g, b, a] = texels[blend.texels[corner] as usize];
-            let share = blend.shares[corner];
+        for (&[r, g, b, a], &share) in texels.iter().zip(&shares) {
             sum[0] += share * colors[usize::from(r)];
             sum[1] += share * colors[usize::from(g)];
             sum[2] += share * colors[usize::from(b)];
@@ -165,13 +179,6 @@ impl TextureImage {
             sum[3] = if sum[3] >= cutoff { 1.0 } else { 0.0 };
         }
         sum
-    }
-
-    /// What a texture shows close up.
-    #[inline]
-    pub fn show_close_up(&self, texture: &Texture, point: [f32; 2]) -> [f32; 4] {
-        let grid = TexelGrid::new(texture, [self.width(), self.height()]);
-        self.show(0, &grid.blend(0, point))
     }
 }
 
