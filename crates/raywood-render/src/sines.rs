@@ -7,12 +7,12 @@ use std::f32::consts::TAU;
 pub(crate) fn sin_cos_of_turn(turn: f32) -> (f32, f32) {
     // The nearest of the four axes, and the rest, at most an eighth of a turn.
     let quarters = (4.0 * turn + 8.5) as i32;
-    let rest = turn - 0.25 * (quarters - 8) as f32;
+    let rest = turn - 0.25 * quarters.wrapping_sub(8) as f32;
     let (sin, cos) = sin_cos_of_eighth(TAU * rest);
     let is_upright = quarters & 1 != 0;
     let (y, x) = if is_upright { (cos, sin) } else { (sin, cos) };
     let y = if quarters & 2 != 0 { -y } else { y };
-    let x = if (quarters + 1) & 2 != 0 { -x } else { x };
+    let x = if quarters.wrapping_add(1) & 2 != 0 { -x } else { x };
     (y, x)
 }
 
