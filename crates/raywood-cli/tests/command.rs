@@ -99,9 +99,14 @@ fn the_picture_does_not_depend_on_the_build() {
             format!("render builtin:sphereflake --size 48x30 --build {name} -o {name}.png");
         let output = run(&folder, &arguments);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
-        pictures.push(fs::read(folder.join(format!("{name}.png"))).expect("a picture"));
+        let picture = Picture::read(&folder.join(format!("{name}.png"))).expect("a picture");
+        pictures.push((name, picture));
     }
-    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+    for (name, picture) in &pictures {
+        // Which rays leave their packets for being incoherent depends on the tree, and packets round differently; mirrors enlarge that.
+        let difference = picture.difference(&pictures[0].1);
+        assert!(difference.mean <= 0.1 && difference.outliers <= 0.002, "{name}: {difference:?}");
+    }
     for command in ["info builtin:whitted", "compare builtin:whitted --structures bvh-wide"] {
         let output = run(&folder, &format!("{command} --build fastest"));
         assert_eq!(code(&output), 0, "{}", stderr(&output));
