@@ -101,6 +101,12 @@ impl Aabb {
         dot(gaps, gaps).sqrt() as f32
     }
 
+    /// The same box with what lies at infinity brought back to the largest numbers, so that differences of its coordinates are numbers; `None` if it is empty or has NaN.
+    pub(crate) fn as_region(&self) -> Option<Self> {
+        let finite = |v: Vec3| v.max(Vec3::splat(f32::MIN)).min(Vec3::splat(f32::MAX));
+        (!self.is_empty()).then(|| Self { min: finite(self.min), max: finite(self.max) })
+    }
+
     /// Half the surface area, zero when empty, in double precision, where no finite box overflows or vanishes. Ratios of areas are all
     /// that cost estimates need.
     #[inline]

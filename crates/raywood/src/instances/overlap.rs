@@ -35,7 +35,7 @@ pub(super) trait Touches {
 impl Touches for Aabb {
     fn around(&self) -> Option<(Aabb, f32)> {
         // An empty one has no distance from anything. One with NaN is empty, too.
-        (!self.is_empty()).then_some((*self, 0.0))
+        Some((self.as_region()?, 0.0))
     }
 
     fn triangle(&self, corners: [Double3; 3]) -> bool {

@@ -217,7 +217,8 @@ fn what_touches_regions_is_that_of_the_flattened_scene() {
         assert_eq!(overlapping(&both.scene, &half), expected);
         let all = overlapping(&both.scene, &Ball::new([0.0; 3], f32::INFINITY));
         assert!(all.len() > expected.len());
-        for region in [Aabb::EMPTY, Aabb::new([f32::NAN; 3], [1.0; 3])] {
+        let at_infinity = Aabb::of_points([Vec3::new(0.0, f32::INFINITY, 0.0)]);
+        for region in [Aabb::EMPTY, Aabb::new([f32::NAN; 3], [1.0; 3]), at_infinity] {
             assert!(overlapping(&both.scene, &region).is_empty());
         }
         for ball in [Ball::new([f32::NAN; 3], 1.0), Ball::new([0.0; 3], -1.0)] {

@@ -5,7 +5,7 @@ use super::private::{Prepare, Touch};
 use crate::geometry::{TriangleBlock, triangle_overlaps};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, boxes_touching, lanes};
-use crate::{Aabb, Geometry, Vec3};
+use crate::{Aabb, Geometry};
 
 /// What touches a box are the triangles with a point in it, within `2^-48` of the largest coordinate, and of other primitives those that [say so](Geometry::overlaps).
 /// The box may reach to infinity; if it is empty or has NaN nothing touches it.
@@ -14,8 +14,7 @@ impl Region for Aabb {}
 impl Prepare for Aabb {
     fn prepare(&self, _: f32) -> Option<impl Touch> {
         // Finite, so that no child that is not there touches it.
-        let finite = |v: Vec3| v.max(Vec3::splat(f32::MIN)).min(Vec3::splat(f32::MAX));
-        (!self.is_empty()).then(|| Aabb { min: finite(self.min), max: finite(self.max) })
+        self.as_region()
     }
 }
 
