@@ -6,7 +6,12 @@ use crate::oracle::{Point, cross, dot, double, length, sub};
 
 /// Whether a part of the triangle lies where `normal . p + offset >= 0` for all planes. Touching counts as far as rounding lets it.
 pub fn triangle_in_planes(corners: [Vec3; 3], planes: &[(Point, f64)]) -> bool {
-    let mut polygon = corners.map(double).to_vec();
+    polygon_in_planes(&corners.map(double), planes)
+}
+
+/// The same of a triangle of double precision, or of any convex polygon.
+pub fn polygon_in_planes(corners: &[Point], planes: &[(Point, f64)]) -> bool {
+    let mut polygon = corners.to_vec();
     for &(normal, offset) in planes {
         let height = |p: Point| dot(normal, p) + offset;
         let mut clipped = Vec::new();
@@ -37,7 +42,15 @@ pub fn planes_of(region: &Aabb, margin: f64) -> Vec<(Point, f64)> {
 
 /// The planes around a triangle of sound shape, `across` away from its own plane on both sides and `beside` outside of its edges.
 pub fn planes_around(corners: [Vec3; 3], across: f64, beside: f64) -> Vec<(Point, f64)> {
-    let [a, b, c] = corners.map(double);
+    planes_around_triangle(corners.map(double), across, beside)
+}
+
+/// The same of a triangle of double precision.
+pub fn planes_around_triangle(
+    [a, b, c]: [Point; 3],
+    across: f64,
+    beside: f64,
+) -> Vec<(Point, f64)> {
     let unit = |v: Point| v.map(|x| x / length(v));
     let normal = unit(cross(sub(b, a), sub(c, a)));
     let back = normal.map(|x| -x);

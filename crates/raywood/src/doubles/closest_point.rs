@@ -23,10 +23,10 @@ pub struct ClosestPoint64 {
 }
 
 /// By how much of itself the distance of a box in single precision counts as less, for what is rounded on the way.
-const ROUNDINGS: f64 = 16.0 * f32::EPSILON as f64;
+pub(super) const ROUNDINGS: f64 = 16.0 * f32::EPSILON as f64;
 
 /// How far rounding moves a mesh of size one.
-const DISPLACEMENT: f64 = f32::EPSILON as f64;
+pub(super) const DISPLACEMENT: f64 = f32::EPSILON as f64;
 
 impl Bvh64 {
     /// The point of the mesh that is closest to `point`, no further away than `max_distance` (infinity for any). `None` if there is none, or if the point is not
@@ -85,7 +85,7 @@ impl Bvh64 {
 }
 
 /// How far a point is from a box.
-fn distance_of_box(point: Double3, bounds: &Aabb) -> f64 {
+pub(super) fn distance_of_box(point: Double3, bounds: &Aabb) -> f64 {
     let beside = [0, 1, 2].map(|axis| {
         let (min, max) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
         (min - point[axis]).max(point[axis] - max).max(0.0)

@@ -7,6 +7,7 @@ mod build_and_query;
 mod closest_point;
 mod conformance;
 mod double_hits;
+mod double_overlap;
 mod doubles;
 mod dynamic;
 mod forest;

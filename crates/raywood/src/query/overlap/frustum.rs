@@ -3,7 +3,7 @@
 use super::Region;
 use super::private::{Prepare, Touch};
 use crate::double::{Double3, add, cross, dot, double, scale, sub};
-use crate::geometry::TriangleBlock;
+use crate::geometry::{TriangleBlock, is_left_of};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, lanes};
 use crate::{Geometry, Vec3};
@@ -93,7 +93,8 @@ impl Touch for Prepared {
     fn triangles<S: Simd>(&self, _: S, block: &TriangleBlock, chosen: u32) -> u32 {
         let mut touching = 0;
         for lane in lanes(chosen) {
-            touching |= u32::from(self.holds_part_of(block.corners(lane))) << lane;
+            let corners = block.corners(lane).map(double);
+            touching |= u32::from(is_left_of(corners, &self.planes)) << lane;
         }
         touching
     }
@@ -105,41 +106,5 @@ impl Touch for Prepared {
             let farthest = [0, 1, 2].map(|i| if normal[i] > 0.0 { max[i] } else { min[i] });
             dot(*normal, farthest) + offset >= 0.0
         })
-    }
-}
-
-impl Prepared {
-    /// Whether something is left of a triangle that is cut off at each plane (Sutherland and Hodgman 1974).
-    #[inline(never)]
-    fn holds_part_of(&self, corners: [Vec3; 3]) -> bool {
-        // Each plane adds a corner at most.
-        let mut polygon = [[0.0; 3]; 9];
-        let mut count = 3;
-        for (place, corner) in polygon.iter_mut().zip(corners) {
-            *place = double(corner);
-        }
-        for (normal, offset) in &self.planes {
-            let height = |p: Double3| dot(*normal, p) + offset;
-            let whole = polygon;
-            let mut kept = 0;
-            let mut keep = |corner: Double3| {
-                if let Some(place) = polygon.get_mut(kept) {
-                    *place = corner;
-                    kept += 1;
-                }
-            };
-            for number in 0..count {
-                let (p, q) = (whole[number], whole[(number + 1) % count]);
-                let (h, k) = (height(p), height(q));
-                if h >= 0.0 {
-                    keep(p);
-                }
-                if (h < 0.0) != (k < 0.0) {
-                    keep(add(p, scale(h / (h - k), sub(q, p))));
-                }
-            }
-            count = kept;
-        }
-        count > 0
     }
 }
