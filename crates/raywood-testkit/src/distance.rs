@@ -48,20 +48,20 @@ pub fn tolerance(point: Vec3, mesh: &TriangleMesh, distance: f64) -> f64 {
     distance * f64::from(f32::EPSILON) + f64::from(largest) * 2f64.powi(-40) + 2f64.powi(-149)
 }
 
-/// How often a mesh goes around a point: the sum of the solid angles of all triangles, each by the excess of its spherical angles' tangent formula.
+/// How often a mesh goes around a point: the sum of the solid angles of all triangles.
 pub fn winding_number(point: Vec3, mesh: &TriangleMesh) -> f64 {
     let p = double(point);
-    let angle = |triangle: u32| {
-        let unit = |corner: Vec3| {
-            let v = sub(double(corner), p);
-            let length = length(v);
-            [v[0] / length, v[1] / length, v[2] / length]
-        };
-        let [a, b, c] = mesh.corners(triangle).map(unit);
-        let angle = 2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a));
-        // At a corner there is no angle.
-        if angle.is_nan() { 0.0 } else { angle }
-    };
-    let sum: f64 = (0..mesh.triangles().len() as u32).map(angle).sum();
-    sum / (4.0 * std::f64::consts::PI)
+    let corners = |triangle: u32| mesh.corners(triangle).map(|corner| sub(double(corner), p));
+    (0..mesh.triangles().len() as u32).map(|triangle| winding_of_triangle(corners(triangle))).sum()
+}
+
+/// The share of all directions from zero in which a triangle lies, with the sign of its side, by the tangent formula of its spherical excess.
+pub fn winding_of_triangle(corners: [Point; 3]) -> f64 {
+    let [a, b, c] = corners.map(|v| {
+        let length = length(v);
+        [v[0] / length, v[1] / length, v[2] / length]
+    });
+    let angle = 2.0 * dot(a, cross(b, c)).atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+    // At a corner there is no angle.
+    if angle.is_nan() { 0.0 } else { angle / (4.0 * std::f64::consts::PI) }
 }

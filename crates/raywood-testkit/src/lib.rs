@@ -1,4 +1,4 @@
-//! Test helpers of the workspace: a brute-force oracle in double precision, one in integers for rays of double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
+//! Test helpers of the workspace: a brute-force oracle in double precision, a reference for all queries of any scene, one in integers for rays of double precision, shapes by their distance functions, closed and nasty meshes, rays and points that look for trouble,
 //! pseudo-random numbers, means told apart from noise, saved trees taken apart and forged, image comparison, well-formed pages. Not published.
 
 pub mod closed;
@@ -9,8 +9,10 @@ pub mod image;
 pub mod nasty;
 pub mod oracle;
 pub mod overlap;
+pub mod placement;
 pub mod points;
 pub mod rays;
+pub mod reference;
 mod rng;
 pub mod saved;
 pub mod shapes;

@@ -83,6 +83,16 @@ fn nearest_to_edges(corners: [Point; 3], d: Point) -> (f64, f64) {
 fn crossing(mesh: &TriangleMesh, primitive: u32, ray: &Ray) -> Crossing {
     let (o, d) = (double(ray.origin), double(ray.direction));
     let corners = mesh.corners(primitive).map(|p| sub(double(p), o));
+    crossing_from_zero(primitive, corners, d, f64::from(f32::EPSILON))
+}
+
+/// The same of a ray from zero, for queries whose numbers have so large units in the last place.
+pub(crate) fn crossing_from_zero(
+    primitive: u32,
+    corners: [Point; 3],
+    d: Point,
+    epsilon: f64,
+) -> Crossing {
     let [a, b, c] = corners;
     let normal = cross(sub(b, a), sub(c, a));
     let (area2, d_length) = (length(normal), length(d));
@@ -90,7 +100,7 @@ fn crossing(mesh: &TriangleMesh, primitive: u32, ray: &Ray) -> Crossing {
     let edges = [(a, b), (b, c), (c, a)];
     let longest = edges.map(|(p, q)| length(sub(p, q))).into_iter().fold(0.0, f64::max);
     let reach = corners.iter().map(|&p| length(p)).fold(0.0, f64::max);
-    let tolerance = ULPS * f64::from(f32::EPSILON) * reach;
+    let tolerance = ULPS * epsilon * reach;
     if longest * longest * d_length > SLIVER * toward.abs() {
         // Seen from the ray a line: never certainly hit, possibly anywhere along it.
         let (t, distance) = nearest_to_edges(corners, d);

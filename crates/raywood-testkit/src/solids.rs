@@ -7,7 +7,7 @@ use crate::Rng;
 use crate::oracle::{Point, cross, dot, double, length, sub};
 
 /// A shape of one of the kinds that the library has.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {
     /// Centre and radius.
     Ball(Vec3, f32),
@@ -84,6 +84,36 @@ impl Solid {
         }
     }
 
+    /// The corners of a box around it, the least first, the greatest last.
+    pub fn bounds(&self) -> [Point; 8] {
+        let around = |ends: [Vec3; 2], beside: [f64; 3]| {
+            let [a, b] = ends.map(double);
+            let min = [0, 1, 2].map(|i| a[i].min(b[i]) - beside[i]);
+            let max = [0, 1, 2].map(|i| a[i].max(b[i]) + beside[i]);
+            let side = |corner: usize, i: usize| if corner >> i & 1 == 0 { min[i] } else { max[i] };
+            [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| [0, 1, 2].map(|i| side(corner, i)))
+        };
+        // A circle across an axis reaches as far along others as that leaves it.
+        let across = |axis: Vec3, radius: f32| {
+            let axis = double(axis);
+            let square = dot(axis, axis);
+            axis.map(|x| f64::from(radius) * (1.0 - x * x / square).max(0.0).sqrt())
+        };
+        match *self {
+            Self::Ball(center, radius) => around([center; 2], [f64::from(radius); 3]),
+            Self::Capsule(Capsule { start, end, radius }) => {
+                around([start, end], [f64::from(radius); 3])
+            }
+            Self::Cylinder(Cylinder { start, end, radius }) => {
+                around([start, end], across(end - start, radius))
+            }
+            Self::Box(Aabb { min, max }) => around([min, max], [0.0; 3]),
+            Self::Disc(Disc { center, normal, radius }) => {
+                around([center; 2], across(normal, radius))
+            }
+        }
+    }
+
     /// The largest coordinate that it has.
     pub fn largest(&self) -> f32 {
         let (center, reach, _) = self.extent();
@@ -91,7 +121,7 @@ impl Solid {
     }
 
     /// The nearest point of the surface, by going down the slope of the distance.
-    fn onto_surface(&self, mut p: Point) -> Point {
+    pub fn onto_surface(&self, mut p: Point) -> Point {
         let (_, reach, _) = self.extent();
         let step = 1e-6 * f64::from(reach);
         for _ in 0..8 {
@@ -164,7 +194,7 @@ impl Solid {
     }
 
     /// What a ray meets.
-    fn march(&self, ray: &Ray) -> Passage {
+    pub fn march(&self, ray: &Ray) -> Passage {
         let (o, d) = (double(ray.origin), double(ray.direction));
         let (speed, (center, reach, thickness)) = (length(d), self.extent());
         let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
@@ -176,7 +206,8 @@ impl Solid {
             if height.abs() > shell { height.signum() } else { 0.0 }
         };
 
-        let mut passage = Passage { crossings: Vec::new(), touches: side(t_min) == 0.0 };
+        let mut passage =
+            Passage { crossings: Vec::new(), fronts: Vec::new(), touches: side(t_min) == 0.0 };
         let (mut last, mut in_shell) = ((t_min, side(t_min)), false);
         let mut t = t_min;
         for _ in 0..50_000 {
@@ -228,17 +259,18 @@ impl Solid {
             }
         }
         passage.crossings.push(high);
+        passage.fronts.push(before > 0.0);
     }
 
     /// By how much a distance along a ray may be off: its rounding.
-    fn tolerance(&self, ray: &Ray, t: f64) -> f64 {
+    pub fn tolerance(&self, ray: &Ray, t: f64) -> f64 {
         let largest = f64::from(ray.origin.abs().max_element() + self.largest());
         t.abs() * f64::from(f32::EPSILON) + 1e-13 * largest / length(double(ray.direction))
     }
 
     /// How far a hit lies off the surface, as a multiple of what is allowed.
-    fn off_surface(&self, ray: &Ray, t: f32) -> f64 {
-        let (t, direction) = (f64::from(t), double(ray.direction));
+    pub fn off_surface(&self, ray: &Ray, t: f64) -> f64 {
+        let direction = double(ray.direction);
         let off = self.distance(along(double(ray.origin), t, direction)).abs();
         off / (self.tolerance(ray, t) * length(direction))
     }
@@ -253,7 +285,7 @@ impl Solid {
             if !(ray.t_min <= t && t < ray.t_max) {
                 return wrong("outside of the interval", &passage);
             }
-            let off = self.off_surface(ray, t);
+            let off = self.off_surface(ray, f64::from(t));
             if off > 1.0 {
                 return wrong(&format!("{off} times too far off the surface"), &passage);
             }
@@ -292,7 +324,7 @@ impl Solid {
             }
             (None, None) => true,
         };
-        let off = hit.map_or(0.0, |hit| self.off_surface(ray, hit.t));
+        let off = hit.map_or(0.0, |hit| self.off_surface(ray, f64::from(hit.t)));
         if agree && off <= 1.0 {
             Ok(())
         } else {
@@ -302,10 +334,12 @@ impl Solid {
 }
 
 /// What a ray meets of one shape.
-#[derive(Debug)]
-struct Passage {
+#[derive(Clone, Debug)]
+pub struct Passage {
     /// Where it certainly goes through the surface.
-    crossings: Vec<f64>,
+    pub crossings: Vec<f64>,
+    /// Whether each of them comes from outside, or from the side that a disc's normal points to.
+    pub fronts: Vec<bool>,
     /// Whether it also comes so near to the surface, or starts or ends there, that nobody can tell.
-    touches: bool,
+    pub touches: bool,
 }

@@ -1,6 +1,16 @@
 //! The answer to a closest-hit query.
 
 /// Where a ray first meets the geometry.
+///
+/// # Equally near hits
+///
+/// One rule holds for every query that names a primitive, in single and in double precision, for every structure, number of threads and level of instructions: of what is exactly as near, as distances are
+/// told, the lowest instance is named, and of that the lowest primitive. So closest hits, contacts of moving spheres and closest points go by `(t, instance, primitive)`, or the distance instead of `t`;
+/// lists of hits have all of them in this order; and what [options](crate::QueryOptions) leave out does not take part. "Exactly" means that the numbers are the same: two triangles that share an edge may see the same
+/// ray hit it at distances that differ by a rounding, and then the nearer one is named.
+///
+/// The rule ends where distances are not those of single rays. Rays of a batch that travel together ([`agrees_with`](Self::agrees_with)) may name any of those that lie that close. In a [`Tlas`](crate::Tlas) an
+/// object chooses among its own primitives by the distances in its own space, which may differ where those of the scene are one after rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Hit {

@@ -39,7 +39,7 @@
 //! # Contracts
 //!
 //! - Hits lie at `t_min <= t < t_max`, in units of the direction's length; directions need not be normalised.
-//! - At exactly equal `t` the lowest primitive number wins.
+//! - At exactly equal `t` the lowest primitive number wins, of instances first the lowest of theirs: [`Hit`] has the rule and where it ends. `docs/conformance.md` lists what is compared with brute force.
 //! - Watertight: no ray slips between two triangles that share an edge or vertex.
 //! - No input panics, hangs or gives a hit that is not there: meshes with NaN or infinite vertices are refused, rays with NaN miss,
 //!   empty meshes are legal. Saved trees are checked when they are loaded: whatever their bytes are, the same holds.

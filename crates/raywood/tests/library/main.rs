@@ -1,4 +1,4 @@
-//! The tests of the library, one subject per file, in one program: what is generic is compiled once for all of them.
+//! The tests of the library, one subject per file or folder, in one program: what is generic is compiled once for all of them.
 
 mod all_hits;
 mod assemblies;
@@ -18,6 +18,7 @@ mod instance_options;
 mod instance_space;
 mod instances;
 mod kd_tree;
+mod matrix;
 mod moving_instances;
 mod octree;
 mod overlap;
