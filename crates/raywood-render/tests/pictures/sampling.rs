@@ -1,5 +1,6 @@
 //! How pictures are sampled: in passes, until the noise is low, through filters and lenses.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use raywood_render::{
@@ -137,17 +138,19 @@ fn what_was_stopped_goes_on_as_if_nothing_had_happened() {
     let mut stops = 0;
     loop {
         let before = film.mean_samples();
-        let progress = Progress::new();
+        let (progress, is_over) = (Progress::new(), AtomicBool::new(false));
         let ended = std::thread::scope(|scope| {
             let watcher = scope.spawn(|| {
-                // Until something more is there.
-                while progress.standing().samples == 0 && progress.fraction() < 0.3 {
+                // Until something more is there, or all was there too soon to be seen.
+                let is_early = || progress.standing().samples == 0 && progress.fraction() < 0.3;
+                while is_early() && !is_over.load(Ordering::Relaxed) {
                     std::thread::yield_now();
                 }
                 std::thread::sleep(Duration::from_millis(3));
                 progress.cancel();
             });
             let ended = passes(&mut film, &progress);
+            is_over.store(true, Ordering::Relaxed);
             watcher.join().expect("the watcher");
             ended
         });
