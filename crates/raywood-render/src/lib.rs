@@ -21,7 +21,6 @@ mod layers;
 mod lens;
 mod light_sampling;
 mod lights;
-mod opacities;
 mod options;
 mod part;
 mod passes;

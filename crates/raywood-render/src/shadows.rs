@@ -7,6 +7,7 @@ use crate::PreparedScene;
 use crate::fresnel::dielectric;
 use crate::lights::{Illumination, cone_share, from_position};
 use crate::surface_material::SurfaceMaterial;
+use crate::textured::opacity_at;
 
 /// More surfaces than this between a point and a light, and the light counts as hidden.
 pub(crate) const MOST_CROSSINGS: u32 = 32;
@@ -71,16 +72,16 @@ pub(crate) struct Passage {
 ///
 /// What is transparent lets light through in a straight line, unbent. Each surface takes its Fresnel reflection and tints
 /// like a filter; the inside absorbs by its thickness. Bent light would gather in bright caustics, which Whitted's method
-/// does not follow; straight light at least does not make glass black. Holes let all light through: `opacity` is how much of the surface is there. With `opaque`
-/// nothing but holes lets light through.
+/// does not follow; straight light at least does not make glass black. Holes let all light through. With `opaque` nothing but holes lets light
+/// through.
 pub(crate) fn passage(
     prepared: &PreparedScene<'_>,
     ray: &Ray,
     hit: &Hit,
-    opacity: f32,
     opaque: bool,
 ) -> Option<Passage> {
     let material = prepared.material_of(hit);
+    let opacity = if material.perforated { opacity_at(prepared, hit) } else { 1.0 };
     let transmissive = material.transmissive && !opaque;
     if !transmissive && opacity >= 1.0 {
         return None;

@@ -221,7 +221,7 @@ fn opacity_of(material: &TexturedMaterial<'_>, shown: &Shown) -> f32 {
     material.opacity(shown[Slot::Color as usize], shown[Slot::OpacityMap as usize])
 }
 
-/// How much of a surface is there at a hit, as close up. For many hits see [`Opacities`](crate::opacities::Opacities).
+/// How much of a surface is there at a hit, as close up: for shadow rays.
 pub(crate) fn opacity_at(scene: &PreparedScene<'_>, hit: &Hit) -> f32 {
     let is_wanted = |slot: Slot| matches!(slot, Slot::Color | Slot::OpacityMap);
     show_close_up(scene, hit, is_wanted)

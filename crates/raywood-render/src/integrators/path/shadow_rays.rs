@@ -6,9 +6,9 @@ use raywood_scene::Rgb;
 use super::picture::Picture;
 use crate::PreparedScene;
 use crate::bsdf::straight_share;
-use crate::opacities::Opacities;
 use crate::shadows::{Aim, MOST_CROSSINGS, Passage, may_meet, passage};
 use crate::stats::RayCounts;
+use crate::textured::opacity_at;
 use crate::tiles::TilePixels;
 
 /// Whether a light has extent: then a path can find it by itself, through glass too; else light is let straight through glass, for it would never arrive.
@@ -39,7 +39,6 @@ pub(super) struct ShadowRays {
     crossing: Vec<Ray>,
     crossing_bringing: Vec<Bringing>,
     hits: Vec<Option<Hit>>,
-    opacities: Opacities,
 }
 
 impl ShadowRays {
@@ -96,13 +95,12 @@ impl ShadowRays {
 
     /// Takes blocked rays to the next surface, adds the light of those that meet none, and has those wait again that it lets through.
     fn advance(&mut self, picture: &Picture<'_>, pixels: &mut TilePixels, counts: &mut RayCounts) {
-        let Self { crossing: rays, crossing_bringing: bringing, hits, opacities, .. } = self;
+        let Self { crossing: rays, crossing_bringing: bringing, hits, .. } = self;
         let scene = picture.frame.scene;
         let opaque = picture.frame.options.opaque_shadows;
         hits.resize(rays.len(), None);
         scene.tracer().intersect_batch(rays, hits);
         counts.shadow += rays.len() as u64;
-        let opacities = opacities.find(scene, hits);
 
         let mut left = 0;
         for number in 0..rays.len() {
@@ -113,8 +111,8 @@ impl ShadowRays {
                 continue;
             };
             let passed = match extent {
-                Extent::None => passage(scene, ray, hit, opacities[number], opaque),
-                Extent::Some => straight_passage(scene, ray, hit, opacities[number], opaque),
+                Extent::None => passage(scene, ray, hit, opaque),
+                Extent::Some => straight_passage(scene, ray, hit, opaque),
             };
             let Some(Passage { share, origin }) = passed else { continue };
             let (light, crossings) = (light * share, crossings + 1);
@@ -134,10 +132,10 @@ fn straight_passage(
     scene: &PreparedScene<'_>,
     ray: &Ray,
     hit: &Hit,
-    opacity: f32,
     opaque: bool,
 ) -> Option<Passage> {
     let material = scene.material_of(hit);
+    let opacity = if material.perforated { opacity_at(scene, hit) } else { 1.0 };
     let whole = if opaque { Rgb::ZERO } else { straight_share(material) };
     let share = Rgb::splat(1.0 - opacity) + opacity * whole;
     let point = scene.tracer().surface_point(ray, hit);

@@ -5,7 +5,6 @@ use raywood_scene::Rgb;
 
 use crate::integrators::Frame;
 use crate::lights::Lights;
-use crate::opacities::Opacities;
 use crate::shadows::{Aim, MOST_CROSSINGS, Passage, passage};
 use crate::stats::RayCounts;
 use crate::tiles::TilePixels;
@@ -31,7 +30,6 @@ pub(super) struct ColouredShadows {
     rays: Vec<Ray>,
     bringing: Vec<Bringing>,
     hits: Vec<Option<Hit>>,
-    opacities: Opacities,
 }
 
 impl ColouredShadows {
@@ -61,11 +59,10 @@ impl ColouredShadows {
         pixels: &mut TilePixels,
         counts: &mut RayCounts,
     ) {
-        let Self { rays, bringing, hits, opacities } = self;
+        let Self { rays, bringing, hits } = self;
         hits.resize(rays.len(), None);
         frame.scene.tracer().intersect_batch(rays, hits);
         counts.shadow += rays.len() as u64;
-        let opacities = opacities.find(frame.scene, hits);
 
         let Lights { directed, .. } = frame.lights;
         let mut left = 0;
@@ -76,7 +73,7 @@ impl ColouredShadows {
                 continue;
             };
             let opaque = frame.options.opaque_shadows;
-            let passed = passage(frame.scene, &rays[number], hit, opacities[number], opaque);
+            let passed = passage(frame.scene, &rays[number], hit, opaque);
             let Some(Passage { share: passed, origin }) = passed else { continue };
             let share = share * passed;
             let crossings = crossings + 1;
