@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 
 use super::closest_point::{DISPLACEMENT, ROUNDINGS, distance_of_box};
 use super::{Bvh64, LocalFrame, Ray64};
-use crate::double::{Double3, add, cross, dot, largest_magnitude, scale, sub};
-use crate::geometry::{closest_to_zero, is_left_of};
+use crate::double::{Double3, dot, largest_magnitude, sub};
+use crate::geometry::{closest_to_zero, frustum_faces, is_left_of};
 use crate::{Aabb, parallel};
 
 /// A region of space that triangles of double precision can touch: an [`Aabb64`], a [`Ball64`] or a [`Frustum64`]. What each counts as touching is said with it.
@@ -73,17 +73,7 @@ impl Frustum64 {
     /// The frustum with the given corners: four around its front, and behind them, in the same order, four around its back. Each face is the plane along both
     /// of its diagonals, so corners should lie in one.
     pub fn from_corners(corners: [[f64; 3]; 8]) -> Self {
-        let middle = scale(0.125, corners.into_iter().fold([0.0; 3], add));
-        let faces: [[usize; 4]; 6] =
-            [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-        let planes = faces.map(|face| {
-            let [a, b, c, d] = face.map(|number| corners[number]);
-            let normal = cross(sub(c, a), sub(d, b));
-            let center = scale(0.25, add(add(a, b), add(c, d)));
-            let side = dot(normal, sub(middle, center)).signum();
-            (scale(side, normal), center)
-        });
-        Self { planes }
+        Self { planes: frustum_faces(corners) }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::Region;
 use super::private::{Prepare, Touch};
-use crate::double::{Double3, add, cross, dot, double, scale, sub};
-use crate::geometry::{TriangleBlock, is_left_of};
+use crate::double::{Double3, dot, double};
+use crate::geometry::{TriangleBlock, frustum_faces, is_left_of};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, lanes};
 use crate::{Geometry, Vec3};
@@ -28,18 +28,8 @@ impl Frustum {
     /// of its diagonals, so corners should lie in one.
     pub fn from_corners<P: Into<[f32; 3]>>(corners: [P; 8]) -> Self {
         let corners = corners.map(|corner| double(Vec3::from(corner.into())));
-        let middle = scale(0.125, corners.into_iter().fold([0.0; 3], add));
-        let faces: [[usize; 4]; 6] =
-            [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-        let planes = faces.map(|face| {
-            let [a, b, c, d] = face.map(|number| corners[number]);
-            let normal = cross(sub(c, a), sub(d, b));
-            let center = scale(0.25, add(add(a, b), add(c, d)));
-            let side = dot(normal, sub(middle, center)).signum();
-            let normal = scale(side, normal);
-            (normal, -dot(normal, center))
-        });
-        Self { planes }
+        let planes = frustum_faces(corners);
+        Self { planes: planes.map(|(normal, point)| (normal, -dot(normal, point))) }
     }
 }
 
