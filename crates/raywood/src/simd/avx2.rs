@@ -241,6 +241,7 @@ impl Float for F16 {
 impl Simd for Avx2 {
     type F16 = F16;
     type F8 = F8;
+    const FUSES: bool = true;
 
     #[inline(always)]
     fn apart<K: Kernel>(self, kernel: K) -> K::Output {

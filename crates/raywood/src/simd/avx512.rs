@@ -207,6 +207,7 @@ macro_rules! of_rows {
 impl Simd for Avx512 {
     type F16 = F16;
     type F8 = F8;
+    const FUSES: bool = true;
 
     #[inline(always)]
     fn apart<K: Kernel>(self, kernel: K) -> K::Output {

@@ -106,6 +106,7 @@ impl<const N: usize> Float for Array<N> {
 impl Simd for Portable {
     type F16 = Array<16>;
     type F8 = Array<8>;
+    const FUSES: bool = false;
 
     #[inline(never)]
     fn apart<K: Kernel>(self, kernel: K) -> K::Output {

@@ -71,6 +71,9 @@ pub(crate) trait Simd: Copy {
     /// Eight numbers.
     type F8: Float<Array = [f32; 8]>;
 
+    /// Whether products are not rounded before a sum ([`Float::mul_add`]).
+    const FUSES: bool;
+
     /// Runs a kernel as a function of its own, which has all registers to itself.
     fn apart<K: Kernel>(self, kernel: K) -> K::Output;
 

@@ -3,12 +3,16 @@
 use super::frame::Frame;
 use super::kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
 use super::meeting::{Meeting, NEARLY_ONE};
+use super::triangles::ROUNDING;
 use super::waiting::Waiters;
 use super::{GROUP, Groups, NONE, Packet, RAYS};
 use crate::Ray;
 use crate::simd::{Float, Simd};
 use crate::structures::wide::WideBvh;
 use crate::structures::wide::source::{Common, Source};
+
+/// What rays pass by the point that they go to at is known up to so many roundings of its coordinates, and of products on the way.
+const MEASURING_ROUNDINGS: f32 = 2.0;
 
 /// Rays that rise more steeply against the packet's main axis do not come with it.
 pub(super) const STEEPEST: f32 = 20.0;
@@ -75,6 +79,7 @@ impl Packet {
         let [x_axis, y_axis, z_axis] = self.frame.axes;
         let [center_x, center_y, center_z] = tree.parts.center.to_array();
         let (mut bounded, mut latest, mut farthest) = (0, zero, zero);
+        let (mut misses, mut products) = (zero, zero);
         for group in 0..GROUP {
             let wanted = self.waiting.rays[group];
             self.members[group] = 0;
@@ -132,6 +137,18 @@ impl Packet {
             bounded |= members & end.less(never);
             let scale = one / z;
             let (x, y) = (x * scale, y * scale);
+            // How far they pass by the point, as a rule much less than what is allowed, and the products that may have been rounded to find that.
+            if kind == Common::Target {
+                let by_z = passed[z_axis].abs();
+                let by_x = x.abs().mul_add(by_z, passed[x_axis].abs());
+                let by_y = y.abs().mul_add(by_z, passed[y_axis].abs());
+                misses = misses.larger(zero.replaced(members, by_x.larger(by_y).larger(by_z)));
+                if !S::FUSES {
+                    let rounded = members & (one.less(length) | length.less(one));
+                    let product = dx.abs().larger(dy.abs()).larger(dz.abs()) * length;
+                    products = products.larger(zero.replaced(rounded, product));
+                }
+            }
             self.slopes[0][group] = zero.replaced(members, x).to_array();
             self.slopes[1][group] = zero.replaced(members, y).to_array();
             self.scales[group] = scale.to_array();
@@ -145,6 +162,10 @@ impl Packet {
             let limit = never.replaced(members, limit);
             self.nearest[group] = limit.to_array();
             self.primitives[group] = [f32::from_bits(NONE); GROUP];
+        }
+        if kind == Common::Target {
+            let size = point.abs().max_element() + products.greatest();
+            self.frame.offset = misses.greatest() + MEASURING_ROUNDINGS * ROUNDING * size;
         }
         let from_center = (point - tree.parts.center).abs().max_element();
         let distance = from_center.max(farthest.greatest());

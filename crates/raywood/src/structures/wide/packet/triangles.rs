@@ -23,9 +23,6 @@ const EDGE_ROUNDINGS: f32 = 40.0;
 /// The relative error of a depth is at most so many roundings of the same product over the triangle's distance from the origin's.
 const DEPTH_ROUNDINGS: f32 = 16.0;
 
-/// How often what rays miss the common point by counts in both.
-const MISSES: f32 = 4.0;
-
 /// A corner's weight may be off by so much in the worst case; in slivers that cannot be promised, and the triangle test of single rays decides.
 const WEIGHT_TOLERANCE: f32 = 1.0 / 64.0;
 
@@ -130,13 +127,12 @@ impl Triangles {
         // How inexact that is.
         let reach = largest(a).larger(largest(b)).larger(largest(c));
         let steepest = 1.0 + steepness(&groups.whole[0]) + steepness(&groups.whole[1]);
-        let misses = simd.splat16(MISSES * frame.offset);
-        let edge_roundings = reach * simd.splat16(EDGE_ROUNDINGS * ROUNDING) + misses;
-        let errors = edge_roundings * longest * simd.splat16(steepest) * half.abs();
-        let depth_roundings = reach * simd.splat16(DEPTH_ROUNDINGS * ROUNDING) + misses;
-        let tolerances = depth_roundings
-            * (largest(one) * largest(other))
-            * (simd.splat16(steepest) * reciprocal.abs());
+        let edge_roundings = reach * simd.splat16(EDGE_ROUNDINGS * ROUNDING * steepest)
+            + simd.splat16(2.0 * frame.offset * (1.0 + steepest));
+        let errors = edge_roundings * longest * half.abs();
+        let depth_roundings = reach * simd.splat16(DEPTH_ROUNDINGS * ROUNDING * steepest)
+            + simd.splat16(4.0 * frame.offset * steepest);
+        let tolerances = depth_roundings * (largest(one) * largest(other)) * reciprocal.abs();
         let size = volume.abs();
         let known = simd.splat16(LEAST_VOLUME).less_or_equal(size)
             & size.less_or_equal(simd.splat16(GREATEST_VOLUME))
