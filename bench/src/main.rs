@@ -4,6 +4,7 @@
 mod answers;
 mod build;
 mod commands;
+mod cut;
 mod embree;
 mod failure;
 mod machine;

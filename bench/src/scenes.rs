@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use raywood::{TriangleMesh, Vec3};
 use raywood_scene::{LoadOptions, Scene, builtin, load_file};
 
+use crate::cut::cut;
 use crate::pinhole::Pinhole;
 use crate::ray_sets::Viewpoint;
 
@@ -17,6 +18,8 @@ pub(crate) struct SceneEntry {
     pub(crate) source: Source,
     /// By how much they are scaled.
     scale: f32,
+    /// How often each is cut in four.
+    cuts: u32,
     eye: [f32; 3],
     target: [f32; 3],
     /// The tangent of half the vertical angle of view.
@@ -43,6 +46,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         name: "sponza",
         source: Source::File("sponza-dabrovic.obj"),
         scale: 1.0,
+        cuts: 0,
         eye: [-9.5, 4.5, -0.5],
         target: [0.0, 4.4, 0.1],
         tan: 0.6,
@@ -54,6 +58,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         name: "dragon",
         source: Source::File("dragon.ply"),
         scale: 100.0,
+        cuts: 0,
         eye: [2.5, 16.0, 33.0],
         target: [-0.5, 12.0, 0.0],
         tan: 0.16,
@@ -65,6 +70,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         name: "hall",
         source: Source::Builtin("hall"),
         scale: 1.0,
+        cuts: 0,
         eye: [-0.35, 1.55, 6.6],
         target: [0.12, 2.45, -6.0],
         tan: 0.4877,
@@ -76,6 +82,7 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         name: "terrain",
         source: Source::Builtin("terrain?n=1600"),
         scale: 1.0,
+        cuts: 0,
         eye: [-1800.0, 900.0, 8200.0],
         target: [0.0, 560.0, 0.0],
         tan: 0.2773,
@@ -87,10 +94,23 @@ pub(crate) const SCENES: &[SceneEntry] = &[
         name: "kitchen",
         source: Source::File("country-kitchen.glb"),
         scale: 1.0,
+        cuts: 0,
         eye: [1.21, 1.8, 3.85],
         target: [-0.26, 1.21, -0.05],
         tan: 0.4663,
         light: [0.0, 2.2, 1.0],
+        diagonal: None,
+    },
+    // The same view as of Sponza, of the same walls in 64 times as many triangles.
+    SceneEntry {
+        name: "sponza-cut",
+        source: Source::File("sponza-dabrovic.obj"),
+        scale: 1.0,
+        cuts: 3,
+        eye: [-9.5, 4.5, -0.5],
+        target: [0.0, 4.4, 0.1],
+        tan: 0.6,
+        light: [0.5, 12.5, 0.3],
         diagonal: None,
     },
 ];
@@ -155,7 +175,7 @@ impl SceneEntry {
         Ok(BenchScene {
             name: self.name.to_owned(),
             source,
-            mesh: scaled(scene.mesh.triangles, self.scale)?,
+            mesh: cut(scaled(scene.mesh.triangles, self.scale)?, self.cuts)?,
             view: View { eye, target, tan: self.tan, light, diagonal: self.diagonal },
         })
     }
