@@ -218,15 +218,33 @@ impl Entry {
         }
     }
 
-    /// How often it goes around a point.
+    /// How often it goes around a point, as the object sees it: there normals point outwards, of mirrored ones too.
     fn winding(&self, p: Point) -> f64 {
-        match (self.shape, self.corners()) {
-            (_, Some(corners)) => distance::winding_of_triangle(corners.map(|c| sub(c, p))),
-            (Shape::Solid(solid), _) if self.tells_points && solid.is_closed() => {
-                f64::from(u8::from(solid.distance(self.placement.point_back(p)) < 0.0))
+        let p = self.placement.point_back(p);
+        match self.shape {
+            Shape::Triangle(corners) => distance::winding_of_triangle(corners.map(|c| sub(c, p))),
+            Shape::Solid(solid) if self.tells_points && solid.is_closed() => {
+                f64::from(u8::from(solid.distance(p) < 0.0))
             }
-            _ => 0.0,
+            Shape::Solid(_) => 0.0,
         }
+    }
+
+    /// Whether a point is next to its surface as the object sees it, where nobody knows on which side.
+    fn is_beside(&self, p: Point) -> bool {
+        match self.shape {
+            Shape::Triangle(_) => false,
+            Shape::Solid(solid) => solid.distance(self.placement.point_back(p)).abs() < 1e-5,
+        }
+    }
+
+    /// The least and the largest coordinates in the object's space.
+    fn bounds(&self) -> [Point; 2] {
+        let corners = match self.shape {
+            Shape::Triangle(corners) => corners.to_vec(),
+            Shape::Solid(solid) => solid.bounds().to_vec(),
+        };
+        box_around(corners.into_iter())
     }
 
     /// Whether it must, and whether it may be told to touch a region.
@@ -261,8 +279,12 @@ impl Entry {
             }
             Region::Triangle(region) => {
                 if let Some(corners) = corners {
+                    // From one of its corners, in a unit in which everything is about one.
+                    let unit = 16.0 / scene.size;
+                    let near = |p: Point| sub(p, region[0]).map(|x| unit * x);
+                    let (region, corners) = (region.map(near), corners.map(near));
                     let around = |across, beside| {
-                        let planes = overlap::planes_around_triangle(*region, across, beside);
+                        let planes = overlap::planes_around_triangle(region, across, beside);
                         overlap::polygon_in_planes(&corners, &planes)
                     };
                     return (around(1e-13, -1e-9), around(1e-9, 1e-9));
@@ -295,6 +317,13 @@ impl Meeting {
             self.doubtful = true;
         }
     }
+}
+
+/// The least and the largest coordinates of some points.
+fn box_around(points: impl Iterator<Item = Point>) -> [Point; 2] {
+    points.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[min, max], p| {
+        [[0, 1, 2].map(|i| min[i].min(p[i])), [0, 1, 2].map(|i| max[i].max(p[i]))]
+    })
 }
 
 /// All primitives of a scene.
@@ -660,16 +689,37 @@ impl Reference {
             let is_right = answer.is_none() && least.is_none();
             return if is_right { Ok(()) } else { Err(format!("{answer:?}, {least:?}")) };
         };
-        let winding: f64 = self.entries.iter().map(|entry| entry.winding(from)).sum();
         let tolerance = self.tolerance_of_distance(entry, from, least);
-        let is_clear = (winding - 0.5).abs() > 0.1 && least > tolerance;
-        let is_side_right = (answer < 0.0) == (winding > 0.5);
-        let is_right = (answer.abs() - least).abs() <= tolerance && (!is_clear || is_side_right);
-        if is_right {
+        let inside = if least > tolerance { self.is_inside(from) } else { None };
+        let is_side_right = inside.is_none_or(|inside| (answer < 0.0) == inside);
+        if (answer.abs() - least).abs() <= tolerance && is_side_right {
             Ok(())
         } else {
-            Err(format!("{answer} instead of {least}, around {winding} times"))
+            Err(format!("{answer} instead of {least}, inside: {inside:?}"))
         }
+    }
+
+    /// Whether any instance has a point inside; `None` where that is not clear.
+    fn is_inside(&self, p: Point) -> Option<bool> {
+        let mut is_clear = true;
+        for instance in self.entries.chunk_by(|a, b| a.instance == b.instance) {
+            let winding: f64 = instance.iter().map(|entry| entry.winding(p)).sum();
+            let seen = instance[0].placement.point_back(p);
+            let is_within = (0..3).all(|i| {
+                let bounds = || instance.iter().map(|entry| entry.bounds().map(|p| p[i]));
+                let min = bounds().map(|[min, _]| min).fold(f64::INFINITY, f64::min);
+                let max = bounds().map(|[_, max]| max).fold(f64::NEG_INFINITY, f64::max);
+                min + 1e-5 < seen[i] && seen[i] < max - 1e-5
+            });
+            // Several open surfaces may go around what is in no instance's box.
+            let is_outside = winding < 0.4;
+            let is_beside = instance.iter().any(|entry| entry.is_beside(p));
+            if winding > 0.6 && is_within && !is_beside {
+                return Some(true);
+            }
+            is_clear &= is_outside && !is_beside;
+        }
+        is_clear.then_some(false)
     }
 }
 

@@ -6,6 +6,7 @@
 use std::ops::ControlFlow;
 
 use super::place::Placement;
+use super::solid::{Enclosure, InsideSearch};
 use super::view::{Limits, View};
 use super::{Tlas, Traceable, Transform};
 use crate::double::{Double3, double};
@@ -27,7 +28,7 @@ impl Affine {
         Self { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] };
 
     /// Another one, and after it this.
-    fn after(&self, first: &Transform) -> Self {
+    pub(super) fn after(&self, first: &Transform) -> Self {
         let first = first.rows().map(|row| row.map(f64::from));
         let entry = |row: &[f64; 4], column: usize| {
             row[0] * first[0][column] + row[1] * first[1][column] + row[2] * first[2][column]
@@ -104,10 +105,16 @@ pub struct SpaceSearch<'a> {
     pub(super) near: &'a mut dyn Near,
 }
 
-/// What can be searched where it stands: what [`Tlas::closest_point`] and [`Tlas::overlapping`] ask for. Types of one's own that are a [`Bvh`] or a [`Tlas`] hand the search on to it.
+/// What can be searched where it stands: what [`Tlas::closest_point`], [`Tlas::overlapping`] and [`Tlas::solid`] ask for. Types of one's own that are a [`Bvh`] or a [`Tlas`] hand everything on to it.
 pub trait Searchable: Traceable {
     /// Has the search look at what is near.
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()>;
+
+    /// Sums up what [`encloses`](Self::encloses) needs to know. O(N).
+    fn enclosure(&self) -> Enclosure;
+
+    /// Whether a point is inside, by what was summed up of this object.
+    fn encloses(&self, enclosure: &Enclosure, search: &mut InsideSearch<'_>) -> bool;
 }
 
 impl SpaceSearch<'_> {
@@ -124,6 +131,14 @@ impl<B: Searchable> Searchable for Tlas<B> {
         let limits = view.limits(search.limit);
         let level = self.level;
         tree.search(&mut SearchInstances { placements, level, view, limits, search })
+    }
+
+    fn enclosure(&self) -> Enclosure {
+        Enclosure::of_scene(self)
+    }
+
+    fn encloses(&self, enclosure: &Enclosure, search: &mut InsideSearch<'_>) -> bool {
+        enclosure.holds_in_scene(self, search)
     }
 }
 
@@ -154,7 +169,7 @@ impl Kernel for Children<'_> {
 }
 
 impl<B: Searchable> TopQuery for SearchInstances<'_, '_, B> {
-    fn children(&self, node: &WideNode) -> (u32, [f32; 16]) {
+    fn children(&mut self, node: &WideNode) -> (u32, [f32; 16]) {
         let (view, limit) = (&self.view, self.limits.boxes);
         dispatch_on(self.level, Children { view, node, limit })
     }
@@ -183,6 +198,14 @@ impl<G: Geometry + Send> Searchable for Bvh<G> {
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()> {
         let (tree, geometry) = (&self.tree, &self.geometry);
         dispatch_on(tree.level(), SearchTree { tree, geometry, search })
+    }
+
+    fn enclosure(&self) -> Enclosure {
+        Enclosure::of_tree(self)
+    }
+
+    fn encloses(&self, enclosure: &Enclosure, search: &mut InsideSearch<'_>) -> bool {
+        enclosure.holds_in_tree(self, search)
     }
 }
 

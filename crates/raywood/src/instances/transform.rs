@@ -294,6 +294,11 @@ impl Inverse {
         if usual { ObjectRay { ray: seen, unit: 1.0 } } else { rescaled(seen, direction) }
     }
 
+    /// Where a point lies in the object's space.
+    pub(super) fn point(&self, p: Double3) -> Double3 {
+        self.vector(sub(p, self.from))
+    }
+
     /// What becomes of a vector.
     #[inline(always)]
     fn vector(&self, v: Double3) -> Double3 {

@@ -1,5 +1,6 @@
 //! What is inside: signed distances from closed surfaces, and from those that are nearly so.
 
+use crate::double::double;
 use crate::simd::{Kernel, Simd, dispatch_on};
 use crate::structures::wide::winding::Winding;
 use crate::{Bvh, Geometry, Vec3, parallel};
@@ -122,7 +123,7 @@ impl<G: Geometry> Kernel for WindingNumbers<'_, G> {
         let mut stack = Vec::new();
         for (&point, answer) in points.iter().zip(answers) {
             *answer = match point.is_finite() {
-                true => winding.around(&bvh.tree, &bvh.geometry, point, &mut stack) as f32,
+                true => winding.around(&bvh.tree, &bvh.geometry, double(point), &mut stack) as f32,
                 false => 0.0,
             };
         }

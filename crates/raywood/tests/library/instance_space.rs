@@ -12,7 +12,7 @@ use raywood_testkit::{Rng, distance, shapes};
 use crate::instances::{friendly, nasty_transforms};
 
 /// Transforms of every kind that take points of a coarse lattice to points of a finer one, so that nothing is rounded.
-fn exact_transforms() -> Vec<Transform> {
+pub(crate) fn exact_transforms() -> Vec<Transform> {
     let place = |x, y, z| Transform::translation([x, y, z]);
     let turn =
         Transform::from_rows([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0]]);
@@ -31,7 +31,7 @@ fn exact_transforms() -> Vec<Transform> {
 }
 
 /// Triangles on a lattice.
-fn on_lattice(count: usize, seed: u64) -> TriangleMesh {
+pub(crate) fn on_lattice(count: usize, seed: u64) -> TriangleMesh {
     shapes::mapped(&shapes::soup(count, 0.5, seed), |p| {
         p.to_array().map(|x| (256.0 * x).round() / 256.0).into()
     })
@@ -45,13 +45,13 @@ fn placed<B>(object: &Arc<B>, transforms: &[Transform]) -> Vec<Instance<B>> {
 }
 
 /// A scene of scenes, and all triangles of it in the order of instances; those that no mask sees in a place of their own, far away.
-struct Flattened {
-    scene: Tlas<Tlas<Bvh<TriangleMesh>>>,
-    flat: Bvh<TriangleMesh>,
+pub(crate) struct Flattened {
+    pub(crate) scene: Tlas<Tlas<Bvh<TriangleMesh>>>,
+    pub(crate) flat: Bvh<TriangleMesh>,
     count: u32,
 }
 
-fn flattened(
+pub(crate) fn flattened(
     mesh: TriangleMesh,
     transforms: &[Transform],
     mask: u32,
@@ -87,12 +87,12 @@ impl Flattened {
         ClosestPoint { instance, primitive, ..closest }
     }
 
-    fn numbers(&self, primitive: u32) -> (u32, u32) {
+    pub(crate) fn numbers(&self, primitive: u32) -> (u32, u32) {
         (primitive / self.count, primitive % self.count)
     }
 
     /// What touches a region in the flattened scene, by the numbers of the other, in order.
-    fn overlapping(&self, region: &impl Region) -> Vec<(u32, u32)> {
+    pub(crate) fn overlapping(&self, region: &impl Region) -> Vec<(u32, u32)> {
         let mut found = Vec::new();
         let flow = self.flat.overlapping(region, |primitive| {
             found.push(self.numbers(primitive));
@@ -105,7 +105,7 @@ impl Flattened {
 }
 
 /// Points in and around a scene, some of them on its lattice.
-fn some_points(bounds: &Aabb, count: usize, seed: u64) -> Vec<Vec3> {
+pub(crate) fn some_points(bounds: &Aabb, count: usize, seed: u64) -> Vec<Vec3> {
     let mut rng = Rng::new(seed);
     let (center, half) = (bounds.center(), 0.5 * bounds.extent());
     (0..count)
@@ -178,7 +178,10 @@ fn check_distances<B: Searchable>(scene: &Tlas<B>, flat: &TriangleMesh, rng: &mu
 }
 
 /// What touches a region, in order.
-fn overlapping<B: Searchable>(scene: &Tlas<B>, region: &impl SceneRegion) -> Vec<(u32, u32)> {
+pub(crate) fn overlapping<B: Searchable>(
+    scene: &Tlas<B>,
+    region: &impl SceneRegion,
+) -> Vec<(u32, u32)> {
     let mut found = Vec::new();
     let flow = scene.overlapping(region, |instance, primitive| {
         found.push((instance, primitive));

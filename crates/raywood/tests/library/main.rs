@@ -15,6 +15,7 @@ mod grids;
 mod hit_options;
 mod instance_batches;
 mod instance_options;
+mod instance_queries;
 mod instance_space;
 mod instances;
 mod kd_tree;

@@ -172,8 +172,8 @@ impl TopTree {
 
 /// What a search through the tree looks for.
 pub(crate) trait TopQuery {
-    /// The children of a node to look into, as a set of lanes, and the key of each, which is a number.
-    fn children(&self, node: &WideNode) -> (u32, [f32; WIDTH]);
+    /// The children of a node to look into, as a set of lanes, and the key of each.
+    fn children(&mut self, node: &WideNode) -> (u32, [f32; WIDTH]);
 
     /// What has a larger key need not be looked into.
     fn limit(&self) -> f32;

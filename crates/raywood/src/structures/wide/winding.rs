@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 use super::WideBvh;
 use super::node::{Reference, WIDTH};
 use super::parts::Told;
-use crate::double::{Double3, add, cross, dot, double, scale, sub};
+use crate::double::{Double3, add, cross, dot, double, scale, single, sub};
 use crate::geometry::{LANES, TriangleBlock};
-use crate::{Aabb, Geometry, Vec3};
+use crate::{Aabb, Geometry};
 
 /// How many times its own radius something must be away to be seen as one piece.
 const FAR: f64 = 2.0;
@@ -161,18 +161,37 @@ impl Winding {
         &self,
         tree: &WideBvh,
         geometry: &G,
-        point: Vec3,
+        point: Double3,
         stack: &mut Vec<u32>,
+    ) -> f64 {
+        let rounded = single(point);
+        let mut ones = 0.0;
+        let angles = self.angles(tree, point, stack, |block, triangles, others| {
+            for lane in super::search::lanes(others) {
+                ones += geometry.winding_number(block.primitives[lane], rounded);
+            }
+            let coordinate =
+                |lane: usize, corner, axis| f64::from(block.coordinates(corner, axis)[lane]);
+            half_angles(coordinate, triangles, point)
+        });
+        angles / (4.0 * PI) + ones
+    }
+
+    /// The sum of all solid angles of triangles around a point, 4 pi where they go around once. `half_angles` tells half of the sum of those of a leaf, by the lanes of its triangles and of what is none.
+    #[inline(always)]
+    fn angles(
+        &self,
+        tree: &WideBvh,
+        point: Double3,
+        stack: &mut Vec<u32>,
+        mut half_angles: impl FnMut(&TriangleBlock, u32, u32) -> f64,
     ) -> f64 {
         if self.root == Reference::NOTHING.0 {
             return 0.0;
         }
-        let seen_from = double(point);
-        let place = scale(self.scale, sub(seen_from, self.center));
+        let place = scale(self.scale, sub(point, self.center));
         let place = [place[0] as f32, place[1] as f32, place[2] as f32];
-        // Solid angles: the sum of all, 4 pi where the surface goes around once.
         let (mut near, mut far) = (0.0, 0.0);
-        let mut ones = 0.0;
         stack.clear();
         stack.push(self.root);
         while let Some(item) = stack.pop() {
@@ -196,12 +215,9 @@ impl Winding {
                 true => 0,
                 false => self.repeated.get(&leaf.0).copied().unwrap_or(0),
             };
-            near += half_angles(block, leaf.lanes() & !others & !repeated, seen_from);
-            for lane in super::search::lanes(others) {
-                ones += geometry.winding_number(block.primitives[lane], point);
-            }
+            near += half_angles(block, leaf.lanes() & !others & !repeated, others);
         }
-        (far + 2.0 * near) / (4.0 * PI) + ones
+        far + 2.0 * near
     }
 }
 
@@ -241,16 +257,18 @@ fn seen_as_pieces(node: &Children, [px, py, pz]: [f32; 3]) -> (f64, u32) {
     (f64::from(angle), close)
 }
 
-/// Half the sum of the solid angles of a block's triangles: van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on
+/// Half the sum of the solid angles of some triangles, by lane, corner and axis: van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on
 /// Biomedical Engineering 1983. Half an angle is that of a complex number, and the product of these has the sum of the angles, but for whole turns,
 /// which are counted: one arcus tangent does for all.
 #[inline(always)]
-fn half_angles(block: &TriangleBlock, chosen: u32, point: Double3) -> f64 {
+fn half_angles(
+    coordinate: impl Fn(usize, usize, usize) -> f64,
+    chosen: u32,
+    point: Double3,
+) -> f64 {
     let (mut real, mut imaginary) = ([0.0; LANES], [0.0; LANES]);
     for lane in 0..LANES {
-        let corner = |corner: usize, axis: usize| {
-            f64::from(block.coordinates(corner, axis)[lane]) - point[axis]
-        };
+        let corner = |corner: usize, axis: usize| coordinate(lane, corner, axis) - point[axis];
         let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
         let b = [corner(1, 0), corner(1, 1), corner(1, 2)];
         let c = [corner(2, 0), corner(2, 1), corner(2, 2)];

@@ -7,7 +7,7 @@ mod trees;
 pub(crate) use scenes::{one_level, two_levels};
 pub(crate) use trees::Packets;
 
-use raywood::{ClosestPoint, Hit, SphereHit};
+use raywood::{ClosestPoint, Hit, Ray, SphereHit, Vec3};
 use raywood_testkit::reference::{Found, FoundPoint};
 
 use super::axes::{Choice, Query};
@@ -62,6 +62,13 @@ fn found_contact(contact: SphereHit) -> FoundPoint {
     let SphereHit { t, point, primitive, .. } = contact;
     let point = point.to_array().map(f64::from);
     FoundPoint { point, distance: f64::from(t), instance: 0, primitive }
+}
+
+fn towards_point(rays: &[Ray], trace: impl FnOnce(Vec3, &[Vec3], &mut [bool])) -> Answers {
+    let points: Vec<_> = rays.iter().map(|ray| ray.origin).collect();
+    let mut answers = vec![false; points.len()];
+    trace(rays[0].at(1.0), &points, &mut answers);
+    Answers::Any(answers)
 }
 
 fn sorted<T: Ord>(mut list: Vec<T>) -> Vec<T> {

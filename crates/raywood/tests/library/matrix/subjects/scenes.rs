@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use raywood::{
-    Aabb, Ball, Bvh, Hit, HitColumns, Instance, SceneRegion, Searchable, SimdLevel, Tlas,
+    Aabb, Ball, Bvh, Hit, HitColumns, Instance, SceneRegion, Searchable, SimdLevel, Tlas, Vec3,
 };
 
 use super::{
     Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_point, hit_queries, is_for_packets,
-    sorted,
+    sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, MASK, Query, keeps};
 use crate::matrix::geometries::Shared;
@@ -142,10 +142,29 @@ impl<B: Searchable> Subject for Tlas<B> {
             Query::ClosestPointBatch | Query::BoxOverlap | Query::BallOverlap => {
                 return Err("`Tlas::closest_point_masked` alone takes a mask");
             }
-            Query::AnyTowards => return Err("not for scenes yet: `occluded_batch` does the same"),
-            Query::Inside
-            | Query::SignedDistance
-            | Query::FrustumOverlap
+            Query::AnyTowards => towards_point(&rays, |target, points, answers| {
+                self.occluded_towards(target, 1.0, points, answers);
+            }),
+            Query::Inside => {
+                let solid = self.solid();
+                let asked: Vec<_> = points().map(|number| questions.point(number)).collect();
+                let mut inside = vec![false; asked.len()];
+                solid.contains_batch(&asked, &mut inside);
+                let one = |(&point, is_inside): (&Vec3, bool)| {
+                    assert_eq!(solid.contains(point), is_inside);
+                    let side = if is_inside { -1.0 } else { 1.0 };
+                    let distance = solid.signed_distance(point)?;
+                    Some(side * f64::from(distance.abs()))
+                };
+                Answers::SignedDistances(asked.iter().zip(inside).map(one).collect())
+            }
+            Query::SignedDistance => {
+                let asked: Vec<_> = points().map(|number| questions.point(number)).collect();
+                let mut answers = vec![None; asked.len()];
+                self.solid().signed_distance_batch(&asked, &mut answers);
+                Answers::SignedDistances(answers.into_iter().map(|a| a.map(f64::from)).collect())
+            }
+            Query::FrustumOverlap
             | Query::TriangleOverlap
             | Query::OverlapBatch
             | Query::TreeOverlap

@@ -9,7 +9,7 @@ use raywood::{
 
 use super::{
     Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_contact, found_point, hit_queries,
-    is_for_packets, sorted,
+    is_for_packets, sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, Query, keeps};
 use crate::matrix::distance_of_box;
@@ -28,13 +28,6 @@ fn from_point(rays: &[Ray], trace: impl FnOnce(Vec3, &[Vec3], &mut HitColumns)) 
     let mut columns = HitColumns::default();
     trace(rays[0].origin, &directions, &mut columns);
     Answers::Closest((0..rays.len()).map(|number| columns.get(number).map(found)).collect())
-}
-
-fn towards_point(rays: &[Ray], trace: impl FnOnce(Vec3, &[Vec3], &mut [bool])) -> Answers {
-    let points: Vec<_> = rays.iter().map(|ray| ray.origin).collect();
-    let mut answers = vec![false; points.len()];
-    trace(rays[0].at(1.0), &points, &mut answers);
-    Answers::Any(answers)
 }
 
 impl Subject for Structure<Shared> {

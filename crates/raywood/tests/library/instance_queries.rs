@@ -1,0 +1,66 @@
+//! Questions about space to scenes of instances, on several levels: moving spheres, frustums, triangles, other geometries, insides.
+
+use std::sync::Arc;
+
+use raywood::{Bvh, Instance, Tlas, Transform, TriangleMesh, Vec3};
+use raywood_testkit::{Rng, distance, shapes};
+
+use crate::instance_space::some_points;
+use crate::instances::friendly;
+
+#[test]
+fn inside_is_what_is_inside_of_any_instance() {
+    let mut rng = Rng::new(31);
+    let mesh = shapes::uv_sphere(12, Vec3::new(0.3, 0.0, -0.2), 1.0);
+    let object = Arc::new(Bvh::build(mesh.clone()).expect("it builds"));
+    let mut transforms = friendly(&mut rng);
+    transforms.truncate(8);
+    let inner = transforms.iter().map(|&t| Instance::new(Arc::clone(&object), t)).collect();
+    let inner = Arc::new(Tlas::build(inner).expect("good transforms"));
+    let outer = [
+        Transform::IDENTITY,
+        Transform::scaling([-1.0, 3.0, 0.5]).then(&Transform::rotation([1.0, 1.0, 0.0], 40.0)),
+    ];
+    let outer_instances = outer.iter().map(|&t| Instance::new(Arc::clone(&inner), t)).collect();
+    let scene = Tlas::build(outer_instances).expect("good transforms");
+    let flat: Vec<TriangleMesh> = outer
+        .iter()
+        .flat_map(|o| transforms.iter().map(move |i| (o, i)))
+        .map(|(o, i)| shapes::mapped(&mesh, |p| o.point(i.point(p))))
+        .collect();
+    let solid = scene.solid();
+    let points: Vec<_> =
+        flat.iter().flat_map(|mesh| some_points(&mesh.total_bounds(), 40, rng.bits())).collect();
+    let (mut inside, mut outside) = (0, 0);
+    let mut answers = vec![None; points.len()];
+    solid.signed_distance_batch(&points, &mut answers);
+    for (&point, answer) in points.iter().zip(answers) {
+        let least = flat.iter().map(|mesh| distance::to_mesh(point, mesh)).fold(1e9, f64::min);
+        let windings = flat.iter().map(|mesh| distance::winding_number(point, mesh).abs());
+        let expected = windings.fold(0.0, f64::max) > 0.5;
+        if least > 1e-4 {
+            assert_eq!(solid.contains(point), expected, "{point:?}");
+            assert_eq!(answer.map(|distance| distance < 0.0), Some(expected));
+        }
+        assert_eq!(answer, solid.signed_distance(point));
+        let distance = f64::from(answer.expect("there is a surface")).abs();
+        assert!((distance - least).abs() <= 1e-5 * (1.0 + least + f64::from(point.length())));
+        (inside, outside) = (inside + usize::from(expected), outside + usize::from(!expected));
+    }
+    assert!(inside > 100 && outside > 100, "{inside}, {outside}");
+    assert!(!solid.contains([f32::NAN, 0.0, 0.0]) && !solid.contains([f32::INFINITY; 3]));
+    let nothing = Tlas::<Bvh<TriangleMesh>>::build(vec![]).expect("legal");
+    assert_eq!(nothing.solid().signed_distance([0.0; 3]), None);
+
+    // A floor has no inside, and takes nothing away from what stands on it.
+    let floor = TriangleMesh::new(
+        vec![[-9.0, -9.0, -2.0], [9.0, -9.0, -2.0], [0.0, 9.0, -2.0]],
+        vec![[0, 1, 2]],
+    );
+    let floor = Arc::new(Bvh::build(floor.expect("sound")).expect("it builds"));
+    let both =
+        vec![Instance::new(object, Transform::IDENTITY), Instance::new(floor, Transform::IDENTITY)];
+    let scene = Tlas::build(both).expect("good transforms");
+    let solid = scene.solid();
+    assert!(solid.contains([0.0, 0.0, 0.0]) && !solid.contains([0.0, 0.0, -2.5]));
+}
