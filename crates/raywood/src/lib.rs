@@ -91,8 +91,8 @@ pub use geometry::{Geometry, Joined, PreparedRay, PrimitiveHit, PrimitivePoint, 
 pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use instances::{
-    BoundsMargin, Enclosure, InsideSearch, Instance, InstanceError, ObjectPoint, SceneRegion,
-    SceneSolid, Searchable, SpaceSearch, Tlas, Traceable, Transform, TransformError,
+    BoundsMargin, Enclosure, FrustumSearch, InsideSearch, Instance, InstanceError, ObjectPoint,
+    SceneRegion, SceneSolid, Searchable, SpaceSearch, Tlas, Traceable, Transform, TransformError,
 };
 pub use query::{AcceptAll, Face, HitFilter, HitLists, HitRules, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};

@@ -43,7 +43,7 @@ pub(crate) use clip::round_down;
 pub use closest_point::PrimitivePoint;
 pub(crate) use closest_point::{closest_on_triangle, closest_to_zero};
 pub(crate) use crossing::{cross_triangle, meets_front};
-pub(crate) use cut::is_left_of;
+pub(crate) use cut::{Plane, is_left_of};
 pub use cylinders::{Cylinder, Cylinders};
 pub use discs::{Disc, Discs};
 pub(crate) use frustum_faces::frustum_faces;
@@ -62,7 +62,7 @@ pub(crate) use swept_sphere::swept_sphere;
 pub(crate) use triangle_block::{BlockHits, LANES, TriangleBlock};
 pub use triangle_mesh::{MeshError, TriangleMesh};
 pub(crate) use triangle_mesh::{are_below, are_finite, check_count};
-pub(crate) use triangle_pair::triangles_touch;
+pub(crate) use triangle_pair::{SLACK as TOUCH_SLACK, triangles_touch, triangles_touch_in_double};
 
 use std::sync::Arc;
 

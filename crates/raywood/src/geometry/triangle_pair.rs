@@ -2,11 +2,11 @@
 //! area, which are points or segments.
 
 use super::closest_to_zero;
-use crate::double::{Double3, add, cross, dot, double, scale, sub};
+use crate::double::{Double3, add, cross, dot, double, largest_magnitude, scale, sub};
 use crate::{Aabb, Vec3};
 
 /// What counts as lying on each other, per unit of the largest coordinate: ample for the rounding of all that is computed here.
-const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+pub(crate) const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Whether two triangles have a point in common, within `2^-40` of the largest coordinate where their boxes touch. Symmetric.
 pub(crate) fn triangles_touch(first: [Vec3; 3], second: [Vec3; 3]) -> bool {
@@ -15,9 +15,27 @@ pub(crate) fn triangles_touch(first: [Vec3; 3], second: [Vec3; 3]) -> bool {
         return false;
     }
     let largest = a.min.abs().max(a.max.abs()).max(b.min.abs()).max(b.max.abs()).max_element();
-    let slack = SLACK * f64::from(largest);
     let first = [double(first[0]), double(first[1]), double(first[2])];
     let second = [double(second[0]), double(second[1]), double(second[2])];
+    touch_within(first, second, SLACK * f64::from(largest))
+}
+
+/// The same of triangles in double precision, whose corners may have been rounded: within `2^-40` of the largest coordinate.
+pub(crate) fn triangles_touch_in_double(first: [Double3; 3], second: [Double3; 3]) -> bool {
+    let largest = first.iter().chain(&second).map(|p| largest_magnitude(*p)).fold(0.0, f64::max);
+    let slack = SLACK * largest;
+    let range = |[a, b, c]: [Double3; 3], axis: usize| {
+        let (a, b, c) = (a[axis], b[axis], c[axis]);
+        (a.min(b).min(c), a.max(b).max(c))
+    };
+    let boxes_touch = (0..3).all(|axis| {
+        let ((a, b), (c, d)) = (range(first, axis), range(second, axis));
+        a <= d + slack && c <= b + slack
+    });
+    boxes_touch && touch_within(first, second, slack)
+}
+
+fn touch_within(first: [Double3; 3], second: [Double3; 3], slack: f64) -> bool {
     !lies_beside(first, second, slack)
         && !lies_beside(second, first, slack)
         && (pierces(first, second)

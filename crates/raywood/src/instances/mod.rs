@@ -5,6 +5,7 @@ mod chosen;
 mod closest_point;
 mod crossings;
 mod error;
+mod frustum;
 mod many;
 mod overlap;
 mod place;
@@ -20,6 +21,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 pub use error::InstanceError;
+pub use frustum::FrustumSearch;
 pub use overlap::SceneRegion;
 use place::Placement;
 pub use point::ObjectPoint;

@@ -5,11 +5,12 @@
 
 use std::ops::ControlFlow;
 
+use super::frustum::FrustumSearch;
 use super::place::Placement;
 use super::solid::{Enclosure, InsideSearch};
 use super::view::{Limits, View};
 use super::{Tlas, Traceable, Transform};
-use crate::double::{Double3, double};
+use crate::double::{Double3, add, cross, dot, double, scale};
 use crate::simd::{Float, Kernel, Simd, SimdLevel, dispatch_on};
 use crate::structures::WideNode;
 use crate::structures::wide::parts::Told;
@@ -66,6 +67,22 @@ impl Affine {
     }
 }
 
+impl Affine {
+    /// Where points come from, whatever transform this is; `None` where no numbers are large enough.
+    pub(super) fn back_in_general(&self, points: [Double3; 3]) -> Option<[Double3; 3]> {
+        let row = |i: usize| [self.rows[i][0], self.rows[i][1], self.rows[i][2]];
+        let (a, b, c) = (row(0), row(1), row(2));
+        // The columns of the inverse, but for the determinant.
+        let columns = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant = dot(a, columns[0]);
+        let back = points.map(|p| {
+            let [x, y, z] = [0, 1, 2].map(|i| (p[i] - self.rows[i][3]) / determinant);
+            add(scale(x, columns[0]), add(scale(y, columns[1]), scale(z, columns[2])))
+        });
+        back.as_flattened().iter().all(|x| x.is_finite()).then_some(back)
+    }
+}
+
 /// How uneven a similarity's scale may be, as a share of its square: what rounding of some rotations adds up to.
 const UNEVEN: f64 = 1.0 / (1 << 20) as f64;
 
@@ -110,6 +127,9 @@ pub trait Searchable: Traceable {
     /// Has the search look at what is near.
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()>;
 
+    /// Tells of what touches a frustum.
+    fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()>;
+
     /// Sums up what [`encloses`](Self::encloses) needs to know. O(N).
     fn enclosure(&self) -> Enclosure;
 
@@ -131,6 +151,10 @@ impl<B: Searchable> Searchable for Tlas<B> {
         let limits = view.limits(search.limit);
         let level = self.level;
         tree.search(&mut SearchInstances { placements, level, view, limits, search })
+    }
+
+    fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()> {
+        search.through_scene(self)
     }
 
     fn enclosure(&self) -> Enclosure {
@@ -198,6 +222,10 @@ impl<G: Geometry + Send> Searchable for Bvh<G> {
     fn search(&self, search: &mut SpaceSearch<'_>) -> ControlFlow<()> {
         let (tree, geometry) = (&self.tree, &self.geometry);
         dispatch_on(tree.level(), SearchTree { tree, geometry, search })
+    }
+
+    fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()> {
+        search.through_tree(self)
     }
 
     fn enclosure(&self) -> Enclosure {

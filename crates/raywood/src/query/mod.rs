@@ -17,5 +17,6 @@ pub use hit_lists::HitLists;
 pub(crate) use nearest_hits::NearestHits;
 pub use options::{AcceptAll, Face, HitFilter, HitRules, QueryOptions};
 pub use overlap::{Ball, Frustum, Region};
+pub(crate) use overlap::{PreparedFrustum, Touch};
 pub use solid::Solid;
 pub use sphere_cast::SphereHit;

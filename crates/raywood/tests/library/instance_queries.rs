@@ -2,11 +2,50 @@
 
 use std::sync::Arc;
 
-use raywood::{Bvh, Instance, Tlas, Transform, TriangleMesh, Vec3};
+use raywood::{Bvh, Frustum, Instance, SimdLevel, Tlas, Transform, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, distance, shapes};
 
-use crate::instance_space::some_points;
+use crate::instance_space::{exact_transforms, flattened, on_lattice, overlapping, some_points};
 use crate::instances::friendly;
+
+#[test]
+fn what_touches_frustums_and_triangles_is_that_of_the_flattened_scene() {
+    let mut rng = Rng::new(25);
+    let mut found = 0;
+    for level in SimdLevel::available() {
+        let mut both = flattened(on_lattice(20, 26), &exact_transforms(), u32::MAX, level);
+        // What nobody sees lies nearer, for planes are as exact as what is farthest lets them.
+        let nearer = |p: Vec3| if p.x < 1e8 { p } else { Vec3::splat(1e3) };
+        let flat = shapes::mapped(both.flat.geometry(), nearer);
+        both.flat = Bvh::build(flat).expect("it builds");
+        for eye in some_points(&both.scene.bounds(), 300, 27) {
+            let (forwards, size) = (rng.direction(), rng.range(0.5, 4.0));
+            let right = forwards.cross(rng.direction()).normalize_or_zero();
+            let up = forwards.cross(right);
+            let corner = |depth: f32, x: f32, y: f32| {
+                eye + depth * forwards + (depth * x) * right + (depth * y) * up
+            };
+            let around = [(-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3)];
+            let near = around.map(|(x, y)| corner(0.25 * size, x, y));
+            let far = around.map(|(x, y)| corner(2.0 * size, x, y));
+            let [a, b, c, d] = near;
+            let [e, f, g, h] = far;
+            let frustum = Frustum::from_corners([a, b, c, d, e, f, g, h]);
+            let touching = overlapping(&both.scene, &frustum);
+            assert_eq!(touching, both.overlapping(&frustum), "{frustum:?}");
+            found += touching.len();
+
+            let triangle = [a, f, h];
+            let touching = overlapping(&both.scene, &triangle);
+            assert_eq!(touching, both.overlapping(&triangle), "{triangle:?}");
+            found += touching.len();
+        }
+        let broken = Frustum::from_planes([[f32::NAN; 4]; 6]);
+        assert!(overlapping(&both.scene, &broken).is_empty());
+        assert!(overlapping(&both.scene, &[Vec3::splat(f32::INFINITY); 3]).is_empty());
+    }
+    assert!(found > 500, "only {found}");
+}
 
 #[test]
 fn inside_is_what_is_inside_of_any_instance() {

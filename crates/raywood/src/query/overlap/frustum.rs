@@ -2,8 +2,8 @@
 
 use super::Region;
 use super::private::{Prepare, Touch};
-use crate::double::{Double3, dot, double};
-use crate::geometry::{TriangleBlock, frustum_faces, is_left_of};
+use crate::double::{dot, double};
+use crate::geometry::{Plane, TriangleBlock, frustum_faces, is_left_of};
 use crate::simd::Simd;
 use crate::structures::wide::search::{Planes, lanes};
 use crate::{Geometry, Vec3};
@@ -15,7 +15,7 @@ use crate::{Geometry, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
     /// Of each plane the normal, inwards, and the offset.
-    planes: [(Double3, f64); 6],
+    planes: [Plane; 6],
 }
 
 impl Frustum {
@@ -37,26 +37,47 @@ impl Region for Frustum {}
 
 impl Prepare for Frustum {
     fn prepare(&self, reach: f32) -> Option<impl Touch> {
-        let is_finite = |(normal, offset): &(Double3, f64)| {
-            dot(*normal, *normal).is_finite() && offset.is_finite()
-        };
-        self.planes.iter().all(is_finite).then(|| {
-            // Each further out by what rounding may take.
-            let planes = self.planes.map(|(normal, offset)| {
-                let size = normal[0].abs() + normal[1].abs() + normal[2].abs();
-                (normal, offset + SLACK * (size * f64::from(reach) + offset.abs()))
-            });
-            Prepared { planes }
-        })
+        let planes = self.sound_planes()?;
+        Some(Prepared { planes: planes.map(|plane| widened(plane, f64::from(reach))) })
     }
+}
+
+impl Frustum {
+    /// The planes, if all their numbers are finite.
+    fn sound_planes(&self) -> Option<[Plane; 6]> {
+        let is_finite =
+            |(normal, offset): &Plane| dot(*normal, *normal).is_finite() && offset.is_finite();
+        self.planes.iter().all(is_finite).then_some(self.planes)
+    }
+
+    /// The frustum as it is seen in the space of something that is placed by these rows, and reaches so far from zero there.
+    pub(crate) fn prepare_in(&self, rows: &[[f64; 4]; 3], reach: f32) -> Option<Prepared> {
+        let column = |j: usize| [rows[0][j], rows[1][j], rows[2][j]];
+        // Where the sums that are rounded end at most.
+        let row =
+            |[x, y, z, w]: &[f64; 4]| (x.abs() + y.abs() + z.abs()) * f64::from(reach) + w.abs();
+        let farthest = rows.iter().map(row).fold(0.0, f64::max);
+        let planes = self.sound_planes()?.map(|plane| {
+            let (normal, offset) = widened(plane, farthest);
+            let seen = [dot(normal, column(0)), dot(normal, column(1)), dot(normal, column(2))];
+            (seen, offset + dot(normal, column(3)))
+        });
+        Some(Prepared { planes })
+    }
+}
+
+/// A plane further out by what rounding may take of heights above it, of points that are no farther from zero along any axis.
+fn widened((normal, offset): Plane, farthest: f64) -> Plane {
+    let size = normal[0].abs() + normal[1].abs() + normal[2].abs();
+    (normal, offset + SLACK * (size * farthest + offset.abs()))
 }
 
 /// The rounding of heights above planes, per unit of their largest term.
 const SLACK: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// A frustum a little larger than given.
-struct Prepared {
-    planes: [(Double3, f64); 6],
+pub(crate) struct Prepared {
+    planes: [Plane; 6],
 }
 
 impl Touch for Prepared {

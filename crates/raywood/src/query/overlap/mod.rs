@@ -13,7 +13,8 @@ use std::ops::ControlFlow;
 
 pub use ball::Ball;
 pub use frustum::Frustum;
-use private::Touch;
+pub(crate) use frustum::Prepared as PreparedFrustum;
+pub(crate) use private::Touch;
 
 use crate::geometry::TriangleBlock;
 use crate::simd::{Kernel, Simd, dispatch_on};
@@ -77,11 +78,20 @@ impl<G: Geometry> Bvh<G> {
         region: &R,
         visit: impl FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let (tree, geometry) = (&self.tree, &self.geometry);
-        match region.prepare(tree.reach()) {
-            Some(touch) => dispatch_on(tree.level(), Overlapping { tree, geometry, touch, visit }),
+        match region.prepare(self.tree.reach()) {
+            Some(touch) => self.touching(touch, visit),
             None => ControlFlow::Continue(()),
         }
+    }
+
+    /// The same of a region that is ready.
+    pub(crate) fn touching(
+        &self,
+        touch: impl Touch,
+        visit: impl FnMut(u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let (tree, geometry) = (&self.tree, &self.geometry);
+        dispatch_on(tree.level(), Overlapping { tree, geometry, touch, visit })
     }
 
     /// Whether anything touches a region: [`overlapping`](Self::overlapping) up to the first.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use raywood::{Geometry, Ray, Ray64, Vec3};
+use raywood::{Geometry, Ray, Ray64, TriangleMesh, Vec3};
 use raywood_testkit::Rng;
 use raywood_testkit::placement::Placement;
 use raywood_testkit::reference::{Entry, Met, Reference, Region, Shape, in_double};
@@ -102,7 +102,7 @@ pub(crate) struct Questions {
     pub(crate) halves: Vec<[f64; 3]>,
     pub(crate) radii: Vec<f64>,
     /// Triangles that are in the way.
-    pub(crate) others: Vec<[Vec3; 3]>,
+    pub(crate) others: Vec<[[f64; 3]; 3]>,
     /// Of a view along each axis, from a point: the eye, and half of its width.
     pub(crate) views: Vec<([f64; 3], f64)>,
     /// The radius of spheres that move.
@@ -245,7 +245,8 @@ impl Questions {
         let radii = (0..count).map(|i| size(&mut rng, i + 1)).collect();
         // Askew to everything, so that nobody asks what touches by next to nothing.
         let others = raywood_testkit::shapes::soup(12, 0.9, 77);
-        let others = (0..12).map(|n| others.corners(n)).collect();
+        let others = (0..12).map(|n| others.corners(n).map(|p| add(origin, unit, in_double(p))));
+        let others = others.collect();
         let views = (0..6).map(|i| (add(origin, 1.0, near(&mut rng, 2.0)), [0.25, 1.0][i % 2]));
         let views = views.collect();
         Self {
@@ -287,6 +288,19 @@ impl Questions {
     /// The same in double precision.
     pub(crate) fn rays64(&self, query: Query) -> Vec<Ray64> {
         self.met[self.range(query)].iter().map(|met| met.ray).collect()
+    }
+
+    /// A triangle that is in the way, in single precision.
+    pub(crate) fn other(&self, number: usize) -> [Vec3; 3] {
+        self.others[number].map(|p| Vec3::from(p.map(|x| x as f32)))
+    }
+
+    /// All of them as a mesh.
+    pub(crate) fn mesh_of_others(&self) -> TriangleMesh {
+        let count = self.others.len();
+        let corners = (0..count).flat_map(|number| self.other(number)).collect();
+        let indices = (0..count as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+        TriangleMesh::new(corners, indices).expect("a mesh")
     }
 
     /// A point in single precision.

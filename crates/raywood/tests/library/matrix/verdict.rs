@@ -1,6 +1,6 @@
 //! Holds answers against the reference.
 
-use raywood_testkit::reference::{Entry, Region, in_double};
+use raywood_testkit::reference::{Entry, Region};
 
 use super::axes::{Choice, MASK, Query};
 use super::questions::{NEAREST, Questions, enough, nearest};
@@ -117,7 +117,7 @@ pub(crate) fn check(
                     Query::BoxOverlap => questions.cuboid(number),
                     Query::BallOverlap => questions.ball(number),
                     Query::FrustumOverlap => questions.view(number),
-                    _ => Region::Triangle(questions.others[number].map(in_double)),
+                    _ => Region::Triangle(questions.others[number]),
                 };
                 let is_point = matches!(query, Query::BoxOverlap | Query::BallOverlap);
                 if !is_point || is_finite(number) {

@@ -7,7 +7,7 @@ mod trees;
 pub(crate) use scenes::{one_level, two_levels};
 pub(crate) use trees::Packets;
 
-use raywood::{ClosestPoint, Hit, Ray, SphereHit, Vec3};
+use raywood::{ClosestPoint, Frustum, Hit, Ray, SphereHit, Vec3};
 use raywood_testkit::reference::{Found, FoundPoint};
 
 use super::axes::{Choice, Query};
@@ -69,6 +69,12 @@ fn towards_point(rays: &[Ray], trace: impl FnOnce(Vec3, &[Vec3], &mut [bool])) -
     let mut answers = vec![false; points.len()];
     trace(rays[0].at(1.0), &points, &mut answers);
     Answers::Any(answers)
+}
+
+/// A view as a region.
+fn frustum(questions: &Questions, number: usize) -> Frustum {
+    let plane = |([a, b, c], d): ([f64; 3], f64)| [a, b, c, d].map(|x| x as f32);
+    Frustum::from_planes(questions.planes(number).map(plane))
 }
 
 fn sorted<T: Ord>(mut list: Vec<T>) -> Vec<T> {

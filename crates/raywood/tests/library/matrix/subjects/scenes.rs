@@ -8,8 +8,8 @@ use raywood::{
 };
 
 use super::{
-    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_point, hit_queries, is_for_packets,
-    sorted, towards_point,
+    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_point, frustum, hit_queries,
+    is_for_packets, sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, MASK, Query, keeps};
 use crate::matrix::geometries::Shared;
@@ -164,13 +164,24 @@ impl<B: Searchable> Subject for Tlas<B> {
                 self.solid().signed_distance_batch(&asked, &mut answers);
                 Answers::SignedDistances(answers.into_iter().map(|a| a.map(f64::from)).collect())
             }
-            Query::FrustumOverlap
-            | Query::TriangleOverlap
-            | Query::OverlapBatch
-            | Query::TreeOverlap
-            | Query::SphereCast
-            | Query::SphereCastBatch
-            | Query::Visit => return Err(IN_ITS_OBJECT),
+            Query::OverlapBatch => {
+                let ball = |n: usize| Ball::new(questions.point(n), questions.radii[n] as f32);
+                let balls: Vec<_> = points().map(ball).collect();
+                let mut answers = vec![false; balls.len()];
+                self.overlaps_batch(&balls, &mut answers);
+                Answers::Touched(answers)
+            }
+            Query::FrustumOverlap => {
+                let views = 0..questions.views.len();
+                Answers::Touching(views.map(|n| touching(self, &frustum(questions, n))).collect())
+            }
+            Query::TriangleOverlap => {
+                let others = 0..questions.others.len();
+                Answers::Touching(others.map(|n| touching(self, &questions.other(n))).collect())
+            }
+            Query::TreeOverlap | Query::SphereCast | Query::SphereCastBatch | Query::Visit => {
+                return Err(IN_ITS_OBJECT);
+            }
             Query::Closest
             | Query::Any
             | Query::AllHits

@@ -3,13 +3,12 @@
 use std::ops::ControlFlow;
 
 use raywood::{
-    Aabb, Ball, Bvh, Bvh2, Frustum, Hit, HitColumns, Ray, Region, Structure, StructureKind,
-    TriangleMesh, Vec3,
+    Aabb, Ball, Bvh, Bvh2, Hit, HitColumns, Ray, Region, Structure, StructureKind, Vec3,
 };
 
 use super::{
-    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_contact, found_point, hit_queries,
-    is_for_packets, sorted, towards_point,
+    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_contact, found_point, frustum,
+    hit_queries, is_for_packets, sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, Query, keeps};
 use crate::matrix::distance_of_box;
@@ -204,22 +203,16 @@ impl Subject for Bvh<Shared> {
                 Answers::Touched(answers)
             }
             Query::FrustumOverlap => {
-                let frustum = |number: usize| {
-                    let plane = |([a, b, c], d): ([f64; 3], f64)| [a, b, c, d].map(|x| x as f32);
-                    Frustum::from_planes(questions.planes(number).map(plane))
-                };
                 let views = 0..questions.views.len();
-                Answers::Touching(views.map(|n| touching(self, &frustum(n))).collect())
+                Answers::Touching(views.map(|n| touching(self, &frustum(questions, n))).collect())
             }
             Query::TriangleOverlap => {
-                Answers::Touching(questions.others.iter().map(|o| touching(self, o)).collect())
+                let others = 0..questions.others.len();
+                Answers::Touching(others.map(|n| touching(self, &questions.other(n))).collect())
             }
             Query::TreeOverlap => {
-                let count = questions.others.len();
-                let indices = (0..count as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
-                let other = TriangleMesh::new(questions.others.concat(), indices).expect("a mesh");
-                let other = Bvh::build(other).expect("it builds");
-                let mut told = vec![Vec::new(); count];
+                let other = Bvh::build(questions.mesh_of_others()).expect("it builds");
+                let mut told = vec![Vec::new(); questions.others.len()];
                 let flow = self.overlapping_pairs(&other, |own, others| {
                     told[others as usize].push((0, own));
                     ControlFlow::Continue(())
