@@ -76,6 +76,7 @@ pub use aabb::Aabb;
 pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
+pub use doubles::Solid64;
 pub use doubles::{Aabb64, Ball64, Frustum64, Region64};
 pub use doubles::{Bvh64, ClosestPoint64, Hit64, Ray64, SurfacePoint64, TriangleMesh64};
 pub use error::BuildError;

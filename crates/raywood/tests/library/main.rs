@@ -8,6 +8,7 @@ mod closest_point;
 mod conformance;
 mod double_hits;
 mod double_overlap;
+mod double_space;
 mod doubles;
 mod dynamic;
 mod forest;

@@ -177,6 +177,25 @@ impl Winding {
         angles / (4.0 * PI) + ones
     }
 
+    /// The same of a mesh of double precision: the tree stands in its frame, while `corners` are those of its triangles, and `point` a point beside them.
+    #[inline(always)]
+    pub(crate) fn around_in_double(
+        &self,
+        tree: &WideBvh,
+        (point, in_frame): (Double3, Double3),
+        stack: &mut Vec<u32>,
+        corners: impl Fn(u32) -> [Double3; 3],
+    ) -> f64 {
+        let angles = self.angles(tree, in_frame, stack, |block, triangles, _| {
+            let mut near = [[[0.0; 3]; 3]; LANES];
+            for lane in super::search::lanes(triangles) {
+                near[lane] = corners(block.primitives[lane]);
+            }
+            half_angles(|lane, corner, axis| near[lane][corner][axis], triangles, point)
+        });
+        angles / (4.0 * PI)
+    }
+
     /// The sum of all solid angles of triangles around a point, 4 pi where they go around once. `half_angles` tells half of the sum of those of a leaf, by the lanes of its triangles and of what is none.
     #[inline(always)]
     fn angles(

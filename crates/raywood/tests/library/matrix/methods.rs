@@ -118,7 +118,15 @@ fn no_query_is_forgotten() {
             if let Some(head) = line.strip_prefix("impl") {
                 let name = |types: &[&str]| types.iter().any(|t| head.contains(t));
                 is_facade = !head.contains(" for ")
-                    && name(&[" Bvh<", " Bvh2 ", " Bvh64 ", " Tlas<", " Structure<", "Solid<"]);
+                    && name(&[
+                        " Bvh<",
+                        " Bvh2 ",
+                        " Bvh64 ",
+                        " Tlas<",
+                        " Structure<",
+                        "Solid<",
+                        "Solid64<",
+                    ]);
             } else if line == "}" {
                 is_facade = false;
             }

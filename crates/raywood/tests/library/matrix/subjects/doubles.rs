@@ -113,9 +113,20 @@ impl Subject for Bvh64 {
                     "batches of double precision find out themselves that rays share a point",
                 );
             }
-            Query::Inside
-            | Query::SignedDistance
-            | Query::TriangleOverlap
+            Query::Inside => {
+                let solid = self.solid();
+                let one = |&point: &[f64; 3]| {
+                    let side = if solid.contains(point) { -1.0 } else { 1.0 };
+                    Some(side * solid.signed_distance(point)?.abs())
+                };
+                Answers::SignedDistances(questions.points.iter().map(one).collect())
+            }
+            Query::SignedDistance => {
+                let mut answers = vec![None; questions.points.len()];
+                self.solid().signed_distance_batch(&questions.points, &mut answers);
+                Answers::SignedDistances(answers)
+            }
+            Query::TriangleOverlap
             | Query::TreeOverlap
             | Query::SphereCast
             | Query::SphereCastBatch
