@@ -2,7 +2,7 @@
 
 use super::{Ray64, TriangleMesh64};
 use crate::double::{Double3, largest_magnitude, single, sub};
-use crate::{Ray, TriangleMesh, Vec3};
+use crate::{Aabb, Ray, TriangleMesh, Vec3};
 
 /// Where the middle of a mesh is, and by which power of two it is scaled so that no coordinate is larger than one.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +83,22 @@ impl LocalFrame {
     #[inline(always)]
     pub(super) fn length(&self, length: f64) -> f64 {
         length * self.scale
+    }
+
+    /// Takes boxes that stand in another frame into this one: larger by what both meshes were displaced by when they were rounded, and by what counts as touching, and rounded outwards.
+    pub(super) fn place_of(&self, other: &Self) -> impl Fn(&Aabb) -> Aabb {
+        let (ratio, moved) = (self.scale / other.scale, self.point(other.center));
+        let margin = DISPLACEMENT * (1.0 + ratio) + MOVED_DISPLACEMENT * largest_magnitude(moved);
+        move |bounds| {
+            let [mut min, mut max] = [[0.0; 3]; 2];
+            for axis in 0..3 {
+                let place = |x: f32| f64::from(x) * ratio + moved[axis];
+                // Finite, so that no child that is not there touches it.
+                min[axis] = rounded_down(place(bounds.min[axis]) - margin).max(f32::MIN);
+                max[axis] = rounded_up(place(bounds.max[axis]) + margin).min(f32::MAX);
+            }
+            Aabb { min: min.into(), max: max.into() }
+        }
     }
 
     /// A ray as it is seen in it. One that is not valid is none there either.

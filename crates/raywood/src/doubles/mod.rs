@@ -12,6 +12,7 @@ mod local_frame;
 mod mesh;
 mod nearest_hits;
 mod overlap;
+mod pairs;
 mod ray;
 mod solid;
 mod surface;

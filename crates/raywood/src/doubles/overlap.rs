@@ -8,10 +8,12 @@ use std::ops::ControlFlow;
 use super::closest_point::{DISPLACEMENT, ROUNDINGS, distance_of_box};
 use super::{Bvh64, LocalFrame, Ray64};
 use crate::double::{Double3, dot, largest_magnitude, sub};
-use crate::geometry::{closest_to_zero, frustum_faces, is_left_of};
+use crate::geometry::{
+    TOUCH_SLACK, closest_to_zero, frustum_faces, is_left_of, triangles_touch_in_double,
+};
 use crate::{Aabb, parallel};
 
-/// A region of space that triangles of double precision can touch: an [`Aabb64`], a [`Ball64`] or a [`Frustum64`]. What each counts as touching is said with it.
+/// A region of space that triangles of double precision can touch: an [`Aabb64`], a [`Ball64`], a [`Frustum64`] or a triangle, `[[f64; 3]; 3]`. What each counts as touching is said with it.
 ///
 /// Regions are solid: what lies inside touches them. A region that is empty, or not made of finite numbers where it says so, is touched by nothing.
 pub trait Region64: Sync + Prepare {}
@@ -81,6 +83,10 @@ impl Region64 for Aabb64 {}
 impl Region64 for Ball64 {}
 impl Region64 for Frustum64 {}
 
+/// A triangle by its corners. What touches it are the triangles that have a point in common with it, within `2^-40` of the largest coordinate as they are seen from its first corner: of their sizes, however far from zero they
+/// lie. If a corner is not finite nothing touches it.
+impl Region64 for [[f64; 3]; 3] {}
+
 /// What makes a region ready for a search.
 pub(super) trait Prepare {
     /// The region as the search asks it; `None` if nothing touches it.
@@ -118,6 +124,13 @@ impl Prepare for Ball64 {
     }
 }
 
+impl Prepare for [Double3; 3] {
+    fn prepare(&self) -> Option<Prepared> {
+        let is_usual = |x: &f64| x.abs() <= Ray64::GREATEST;
+        self.as_flattened().iter().all(is_usual).then_some(Prepared::Triangle(*self))
+    }
+}
+
 impl Prepare for Frustum64 {
     fn prepare(&self) -> Option<Prepared> {
         // Squares of what is longer could overflow; of what is shorter nothing would be left.
@@ -134,6 +147,8 @@ impl Prepare for Frustum64 {
 pub(super) enum Prepared {
     /// What lies on the inner side of planes, by their normals and points.
     Planes([(Double3, Double3); 6]),
+    /// A triangle.
+    Triangle([Double3; 3]),
     /// What lies no further from a centre than a radius.
     Ball { center: Double3, radius: f64 },
 }
@@ -153,6 +168,16 @@ impl Prepared {
                 let rounding = DISPLACEMENT + f64::EPSILON * 8.0 * largest_magnitude(point);
                 dot(*normal, inwards) + size * rounding >= 0.0
             }),
+            Self::Triangle(corners) => {
+                let corners = corners.map(|corner| frame.point(corner));
+                let farthest = corners.map(largest_magnitude).into_iter().fold(1.0, f64::max);
+                let rounding = DISPLACEMENT + 4.0 * TOUCH_SLACK * farthest;
+                (0..3).all(|axis| {
+                    let [a, b, c] = corners.map(|corner| corner[axis]);
+                    let [min, max] = [bounds.min[axis], bounds.max[axis]].map(f64::from);
+                    min - rounding <= a.max(b).max(c) && a.min(b).min(c) <= max + rounding
+                })
+            }
             Self::Ball { center, radius } => {
                 let distance = distance_of_box(frame.point(*center), bounds);
                 distance - DISPLACEMENT - ROUNDINGS * distance <= frame.length(*radius)
@@ -171,6 +196,10 @@ impl Prepared {
                     (normal, -dot(normal, from))
                 });
                 is_left_of(corners.map(|corner| sub(corner, origin)), &planes)
+            }
+            Self::Triangle(own) => {
+                let seen = |triangle: [Double3; 3]| triangle.map(|corner| sub(corner, own[0]));
+                triangles_touch_in_double(seen(*own), seen(corners))
             }
             Self::Ball { center, radius } => {
                 let (offset, ..) = closest_to_zero(corners.map(|corner| sub(corner, *center)));

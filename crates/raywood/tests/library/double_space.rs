@@ -1,9 +1,11 @@
 //! Insides, moving spheres and other meshes in double precision, wherever they lie.
 
+use std::ops::ControlFlow;
+
 use raywood::Bvh64;
 use raywood_testkit::Rng;
 
-use crate::doubles::{PLACES, add, bumpy, scaled, sub};
+use crate::doubles::{PLACES, add, bumpy, in_cube, scaled, sub};
 
 type Point = [f64; 3];
 
@@ -58,4 +60,42 @@ fn inside_is_told_right_next_to_the_surface() {
             assert_eq!(solid.signed_distance([0.0, bad, 0.0]), None);
         }
     }
+}
+
+#[test]
+fn pairs_are_those_of_triangles_one_by_one() {
+    let mut rng = Rng::new(103);
+    let mut found = 0;
+    for (at, size) in PLACES {
+        let bvh = Bvh64::build(bumpy(3, at, size, &mut rng)).expect("it builds");
+        // Of another size, so that its frame is another one.
+        let beside = add(at, scaled(0.7 * size, in_cube(&mut rng)));
+        let other = bumpy(2, beside, 0.3 * size, &mut rng);
+        let mut expected = Vec::new();
+        for number in 0..other.triangles().len() as u32 {
+            let _ = bvh.overlapping(&other.corners(number), |own| {
+                expected.push((own, number));
+                ControlFlow::Continue(())
+            });
+        }
+        let other = Bvh64::build(other).expect("it builds");
+        let mut pairs = Vec::new();
+        let _ = bvh.overlapping_pairs(&other, |own, number| {
+            pairs.push((own, number));
+            ControlFlow::Continue(())
+        });
+        expected.sort_unstable();
+        pairs.sort_unstable();
+        assert_eq!(pairs, expected, "at {at:?}");
+        assert_eq!(bvh.overlaps_any_of(&other), !pairs.is_empty());
+        let mut swapped = Vec::new();
+        let _ = other.overlapping_pairs(&bvh, |number, own| {
+            swapped.push((own, number));
+            ControlFlow::Continue(())
+        });
+        swapped.sort_unstable();
+        assert_eq!(swapped, pairs, "at {at:?}");
+        found += pairs.len();
+    }
+    assert!(found > 20, "only {found}");
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{triangle_overlaps, triangles_touch};
 use crate::simd::dispatch_on;
-use crate::structures::wide::pairs::Pairs;
+use crate::structures::wide::pairs::{AsItIs, Pairs};
 use crate::{Aabb, Bvh, Geometry};
 
 impl<G: Geometry> Bvh<G> {
@@ -40,7 +40,7 @@ impl<G: Geometry> Bvh<G> {
             };
             if touch { visit(first, second) } else { ControlFlow::Continue(()) }
         };
-        let pairs = Pairs { first: &self.tree, second: &other.tree, visit };
+        let pairs = Pairs { first: &self.tree, second: &other.tree, place: AsItIs, visit };
         dispatch_on(self.tree.level(), pairs)
     }
 

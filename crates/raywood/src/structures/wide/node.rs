@@ -46,6 +46,12 @@ impl WideNode {
             .filter(|(_, child)| *child != Reference::NOTHING)
     }
 
+    /// The boxes of the children by their lanes.
+    pub(crate) fn boxes(&self) -> impl Iterator<Item = (usize, Aabb)> {
+        let is_there = |&lane: &usize| self.children[lane] != Reference::NOTHING.0;
+        (0..WIDTH).filter(is_there).map(|lane| (lane, self.bounds(lane)))
+    }
+
     /// The box around all children.
     pub(super) fn around(&self) -> Aabb {
         self.children().map(|(bounds, _)| bounds).fold(Aabb::EMPTY, Aabb::union)

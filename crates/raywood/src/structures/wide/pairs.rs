@@ -4,31 +4,84 @@ use std::collections::HashSet;
 use std::ops::ControlFlow;
 
 use super::WideBvh;
-use super::node::Reference;
+use super::node::{Reference, WideNode};
 use super::search::{boxes_touching, lanes};
 use crate::simd::{Kernel, Simd};
 use crate::{Aabb, Vec3};
 
+/// Where a tree stands in the space of another one.
+pub(crate) trait Place {
+    /// Where a box of it lies: a finite one, and the larger the box the larger.
+    fn place(&self, bounds: &Aabb) -> Aabb;
+
+    /// The children of a node of it that touch a box of the other tree.
+    fn touching<S: Simd>(&self, simd: S, node: &WideNode, bounds: &Aabb) -> u32;
+}
+
+/// In the same space as it is.
+pub(crate) struct AsItIs;
+
+impl Place for AsItIs {
+    #[inline(always)]
+    fn place(&self, bounds: &Aabb) -> Aabb {
+        *bounds
+    }
+
+    #[inline(always)]
+    fn touching<S: Simd>(&self, simd: S, node: &WideNode, bounds: &Aabb) -> u32 {
+        boxes_touching(simd, &node.planes, bounds)
+    }
+}
+
+impl<F: Fn(&Aabb) -> Aabb> Place for F {
+    #[inline(always)]
+    fn place(&self, bounds: &Aabb) -> Aabb {
+        self(bounds)
+    }
+
+    #[inline(always)]
+    fn touching<S: Simd>(&self, _: S, node: &WideNode, bounds: &Aabb) -> u32 {
+        placed_boxes_touching(node, self, bounds)
+    }
+}
+
+/// The children of a node that touch a box, after they were placed somewhere.
+pub(crate) fn placed_boxes_touching(
+    node: &WideNode,
+    place: impl Fn(&Aabb) -> Aabb,
+    bounds: &Aabb,
+) -> u32 {
+    node.boxes().fold(0, |touching, (lane, own)| {
+        touching | u32::from(!place(&own).intersection(bounds).is_empty()) << lane
+    })
+}
+
 /// Tells `visit` all pairs of primitives of two trees that lie in leaves whose boxes touch.
-pub(crate) struct Pairs<'a, F> {
+pub(crate) struct Pairs<'a, P, F> {
     pub(crate) first: &'a WideBvh,
     pub(crate) second: &'a WideBvh,
+    /// Where the second tree stands in the space of the first.
+    pub(crate) place: P,
     pub(crate) visit: F,
 }
 
-impl<F: FnMut(u32, u32) -> ControlFlow<()>> Kernel for Pairs<'_, F> {
+impl<P, F> Kernel for Pairs<'_, P, F>
+where
+    P: Place,
+    F: FnMut(u32, u32) -> ControlFlow<()>,
+{
     type Output = ControlFlow<()>;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> ControlFlow<()> {
-        let Self { first, second, mut visit } = self;
+        let Self { first, second, place, mut visit } = self;
         let mut told = HashSet::new();
         let mut waiting = Vec::new();
-        if first.root != Reference::NOTHING
-            && second.root != Reference::NOTHING
-            && !first.bounds.intersection(&second.bounds).is_empty()
-        {
-            waiting.push(((first.root, first.bounds), (second.root, second.bounds)));
+        if first.root != Reference::NOTHING && second.root != Reference::NOTHING {
+            let (bounds, others) = (first.bounds, place.place(&second.bounds));
+            if !bounds.intersection(&others).is_empty() {
+                waiting.push(((first.root, bounds), (second.root, others)));
+            }
         }
         while let Some(((a, a_bounds), (b, b_bounds))) = waiting.pop() {
             if a.is_leaf() && b.is_leaf() {
@@ -48,8 +101,9 @@ impl<F: FnMut(u32, u32) -> ControlFlow<()>> Kernel for Pairs<'_, F> {
                     waiting.push((child(first, a, lane), (b, b_bounds)));
                 }
             } else {
-                for lane in lanes(boxes_touching(simd, &second.node(b).planes, &a_bounds)) {
-                    waiting.push(((a, a_bounds), child(second, b, lane)));
+                for lane in lanes(place.touching(simd, second.node(b), &a_bounds)) {
+                    let (child, bounds) = child(second, b, lane);
+                    waiting.push(((a, a_bounds), (child, place.place(&bounds))));
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use raywood::{Aabb64, Ball64, Bvh64, ClosestPoint64, Frustum64, Hit64, Region64};
+use raywood::{Aabb64, Ball64, Bvh64, ClosestPoint64, Frustum64, Hit64, Region64, TriangleMesh64};
 use raywood_testkit::reference::{Found, FoundPoint};
 
 use super::{Answers, BATCHES_TAKE_NONE, Offered, Subject, hit_queries, sorted};
@@ -126,11 +126,26 @@ impl Subject for Bvh64 {
                 self.solid().signed_distance_batch(&questions.points, &mut answers);
                 Answers::SignedDistances(answers)
             }
-            Query::TriangleOverlap
-            | Query::TreeOverlap
-            | Query::SphereCast
-            | Query::SphereCastBatch
-            | Query::Visit => return Err("not in double precision yet"),
+            Query::TriangleOverlap => {
+                Answers::Touching(questions.others.iter().map(|o| touching(self, o)).collect())
+            }
+            Query::TreeOverlap => {
+                let count = questions.others.len() as u32;
+                let indices = (0..count).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+                let mesh = TriangleMesh64::new(questions.others.concat(), indices);
+                let other = Bvh64::build(mesh.expect("a mesh")).expect("it builds");
+                let mut told = vec![Vec::new(); questions.others.len()];
+                let flow = self.overlapping_pairs(&other, |own, others| {
+                    told[others as usize].push((0, own));
+                    ControlFlow::Continue(())
+                });
+                assert!(flow.is_continue());
+                assert_eq!(self.overlaps_any_of(&other), told.iter().any(|t| !t.is_empty()));
+                Answers::Touching(told.into_iter().map(sorted).collect())
+            }
+            Query::SphereCast | Query::SphereCastBatch | Query::Visit => {
+                return Err("not in double precision yet");
+            }
             Query::Closest
             | Query::Any
             | Query::AllHits
