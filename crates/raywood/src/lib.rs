@@ -26,7 +26,7 @@
 //! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be: rays, [options](Tlas::intersect_with), [all hits](Tlas::all_hits),
-//!   [closest points](Tlas::closest_point), [insides](Tlas::solid) and [overlaps](Tlas::overlapping) go through them.
+//!   [closest points](Tlas::closest_point), [insides](Tlas::solid), [overlaps](Tlas::overlapping) and [moving spheres](Tlas::sphere_cast) go through them.
 //! - [`Bvh64`] takes meshes in double precision, where single precision cannot tell points apart.
 //! - What moves need not be built anew: [`Bvh::refit`] makes new boxes, [`DynamicBvh`] looks after the quality of the tree as well, and [`Tlas::update`] does for instances.
 //! - A tree can be [saved](Bvh::save) with its mesh and [loaded](Bvh::load) where it lies in memory, or [with more](SavedTree): a mapped file of a million triangles answers its first ray within milliseconds.
@@ -93,7 +93,8 @@ pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use instances::{
     BoundsMargin, Enclosure, FrustumSearch, InsideSearch, Instance, InstanceError, ObjectPoint,
-    SceneRegion, SceneSolid, Searchable, SpaceSearch, Tlas, Traceable, Transform, TransformError,
+    SceneRegion, SceneSolid, Searchable, SpaceSearch, SweptSearch, Tlas, Traceable, Transform,
+    TransformError,
 };
 pub use query::{AcceptAll, Face, HitFilter, HitLists, HitRules, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};

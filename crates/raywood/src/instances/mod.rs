@@ -12,6 +12,7 @@ mod place;
 mod point;
 mod solid;
 mod space;
+mod sphere_cast;
 mod towards;
 mod traceable;
 mod transform;
@@ -27,6 +28,7 @@ use place::Placement;
 pub use point::ObjectPoint;
 pub use solid::{Enclosure, InsideSearch, SceneSolid};
 pub use space::{Searchable, SpaceSearch};
+pub use sphere_cast::SweptSearch;
 pub use traceable::{BoundsMargin, Traceable};
 pub use transform::{Transform, TransformError};
 

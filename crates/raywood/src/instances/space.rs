@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use super::frustum::FrustumSearch;
 use super::place::Placement;
 use super::solid::{Enclosure, InsideSearch};
+use super::sphere_cast::SweptSearch;
 use super::view::{Limits, View};
 use super::{Tlas, Traceable, Transform};
 use crate::double::{Double3, add, cross, dot, double, scale};
@@ -130,6 +131,9 @@ pub trait Searchable: Traceable {
     /// Tells of what touches a frustum.
     fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()>;
 
+    /// Looks for what a moving sphere touches first.
+    fn search_swept(&self, search: &mut SweptSearch<'_>);
+
     /// Sums up what [`encloses`](Self::encloses) needs to know. O(N).
     fn enclosure(&self) -> Enclosure;
 
@@ -155,6 +159,10 @@ impl<B: Searchable> Searchable for Tlas<B> {
 
     fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()> {
         search.through_scene(self)
+    }
+
+    fn search_swept(&self, search: &mut SweptSearch<'_>) {
+        search.through_scene(self);
     }
 
     fn enclosure(&self) -> Enclosure {
@@ -226,6 +234,10 @@ impl<G: Geometry + Send> Searchable for Bvh<G> {
 
     fn search_frustum(&self, search: &mut FrustumSearch<'_>) -> ControlFlow<()> {
         search.through_tree(self)
+    }
+
+    fn search_swept(&self, search: &mut SweptSearch<'_>) {
+        search.through_tree(self);
     }
 
     fn enclosure(&self) -> Enclosure {

@@ -278,7 +278,7 @@ impl ObjectRay {
 }
 
 /// Directions whose largest coordinate lies between these are taken over as they are.
-const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
+pub(super) const USUAL_LENGTHS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
 
 impl Inverse {
     /// In place of one that does not exist.
@@ -301,7 +301,7 @@ impl Inverse {
 
     /// What becomes of a vector.
     #[inline(always)]
-    fn vector(&self, v: Double3) -> Double3 {
+    pub(super) fn vector(&self, v: Double3) -> Double3 {
         let [a, b, c] = &self.columns;
         [0, 1, 2].map(|i| v[0] * a[i] + v[1] * b[i] + v[2] * c[i])
     }

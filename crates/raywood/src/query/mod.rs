@@ -19,4 +19,5 @@ pub use options::{AcceptAll, Face, HitFilter, HitRules, QueryOptions};
 pub use overlap::{Ball, Frustum, Region};
 pub(crate) use overlap::{PreparedFrustum, Touch};
 pub use solid::Solid;
+pub(crate) use sphere_cast::First;
 pub use sphere_cast::SphereHit;

@@ -1,6 +1,6 @@
 //! What a moving sphere touches first.
 
-use crate::double::{Double3, add, dot, double, scale, single, sub};
+use crate::double::{Double3, add, dot, double, largest_magnitude, scale, single, sub};
 use crate::geometry::swept_sphere;
 use crate::simd::{Kernel, Simd, dispatch_on};
 use crate::structures::wide::search::SearchStack;
@@ -17,8 +17,10 @@ pub struct SphereHit {
     /// The direction from there to the sphere's centre, of unit length: the normal of the sphere's bounce. Zero where the centre itself lies on the
     /// surface.
     pub normal: Vec3,
-    /// What it touches; at exactly equal `t` the lowest number wins.
+    /// What it touches; at exactly equal `t` the lowest number wins, of instances first the lowest of theirs.
     pub primitive: u32,
+    /// Which instance of a scene; 0 where there are no instances.
+    pub instance: u32,
 }
 
 impl<G: Geometry> Bvh<G> {
@@ -74,15 +76,15 @@ impl<G: Geometry> Kernel for SphereCast<'_, G> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<SphereHit> {
         let Self { tree, geometry, ray, radius } = self;
-        let mut first = First { ray, radius, hit: None };
-        let mut sweep = Sweep::new(ray, radius, tree.reach(), |leaf, lane| {
+        let mut first = First::new(ray, radius);
+        let mut sweep = Sweep::new(ray, [radius; 3], tree.reach(), |leaf, lane| {
             let primitive = leaf.block.primitives[lane];
             if leaf.others >> lane & 1 == 1 {
                 first.approach(geometry, primitive);
             } else {
-                first.test(primitive, leaf.block.corners(lane));
+                first.test((0, primitive), leaf.block.corners(lane).map(double));
             }
-            first.hit.map_or(ray.t_max, |hit| hit.t)
+            first.limit()
         });
         // It goes on to the end: what comes later may be touched earlier.
         let _ = tree.search(simd, &mut SearchStack::new(tree), &mut sweep);
@@ -94,31 +96,41 @@ impl<G: Geometry> Kernel for SphereCast<'_, G> {
 const STEPS: usize = 4096;
 
 /// The first contact so far.
-struct First<'a> {
+pub(crate) struct First<'a> {
     ray: &'a PreparedRay,
     radius: f32,
-    hit: Option<SphereHit>,
+    pub(crate) hit: Option<SphereHit>,
 }
 
-impl First<'_> {
+impl<'a> First<'a> {
+    pub(crate) fn new(ray: &'a PreparedRay, radius: f32) -> Self {
+        Self { ray, radius, hit: None }
+    }
+
+    /// How far the sphere moves at most until it touches something.
+    pub(crate) fn limit(&self) -> f32 {
+        self.hit.map_or(self.ray.t_max, |hit| hit.t)
+    }
+
+    /// Beyond that nothing is as near, not even after it is rounded.
+    fn end(&self) -> f64 {
+        f64::from(self.limit().next_up())
+    }
+
     /// Where the centre is at `t`.
     fn center(&self, t: f64) -> Double3 {
         add(double(self.ray.origin), scale(t, double(self.ray.direction)))
     }
 
-    /// Compares a triangle.
+    /// Compares a triangle, by the numbers of its instance and its own.
     #[inline(never)]
-    fn test(&mut self, primitive: u32, corners: [Vec3; 3]) {
+    pub(crate) fn test(&mut self, numbers: (u32, u32), [a, b, c]: [Double3; 3]) {
         let origin = double(self.ray.origin);
-        let corners = [
-            sub(double(corners[0]), origin),
-            sub(double(corners[1]), origin),
-            sub(double(corners[2]), origin),
-        ];
+        let corners = [sub(a, origin), sub(b, origin), sub(c, origin)];
         let (direction, radius) = (double(self.ray.direction), f64::from(self.radius));
         let t_min = f64::from(self.ray.t_min.max(f32::MIN));
         if let Some((t, point)) = swept_sphere(corners, direction, radius, t_min) {
-            self.offer(primitive, t, add(origin, point));
+            self.offer(numbers, t, add(origin, point));
         }
     }
 
@@ -127,7 +139,7 @@ impl First<'_> {
     fn approach<G: Geometry>(&mut self, geometry: &G, primitive: u32) {
         let direction = double(self.ray.direction);
         let speed = dot(direction, direction).sqrt();
-        let end = f64::from(self.hit.map_or(self.ray.t_max, |hit| hit.t));
+        let end = self.end();
         let mut t = f64::from(self.ray.t_min.max(f32::MIN));
         for _ in 0..STEPS {
             let center = single(self.center(t));
@@ -141,24 +153,53 @@ impl First<'_> {
                 return;
             }
             if gap <= rounding {
-                return self.offer(primitive, t, double(closest.point));
+                return self.offer((0, primitive), t, double(closest.point));
             }
             t += f64::from(gap) / speed;
         }
     }
 
-    fn offer(&mut self, primitive: u32, t: f64, point: Double3) {
+    /// The same of a primitive that stands somewhere: `offset` tells the way from a point to its closest, as far as it is known, and `largest` the largest coordinate that is rounded on that way.
+    pub(crate) fn approach_placed(
+        &mut self,
+        numbers: (u32, u32),
+        largest: f64,
+        offset: impl Fn(Double3) -> Option<Double3>,
+    ) {
+        let direction = double(self.ray.direction);
+        let (speed, radius) = (dot(direction, direction).sqrt(), f64::from(self.radius));
+        let end = self.end();
+        let mut t = f64::from(self.ray.t_min.max(f32::MIN));
+        for _ in 0..STEPS {
+            let center = self.center(t);
+            if !(t <= end && single(center).is_finite()) {
+                return;
+            }
+            let Some(offset) = offset(center) else { return };
+            let gap = dot(offset, offset).sqrt() - radius;
+            let size = largest_magnitude(center).max(largest) + radius;
+            if gap.is_nan() {
+                return;
+            }
+            if gap <= 4.0 * f64::from(f32::EPSILON) * size {
+                return self.offer(numbers, t, add(center, offset));
+            }
+            t += gap / speed;
+        }
+    }
+
+    fn offer(&mut self, (instance, primitive): (u32, u32), t: f64, point: Double3) {
         let rounded = t as f32;
         let is_first = match &self.hit {
             None => self.ray.accepts(rounded),
-            Some(hit) => rounded < hit.t || rounded == hit.t && primitive < hit.primitive,
+            Some(hit) => (rounded, instance, primitive) < (hit.t, hit.instance, hit.primitive),
         };
         if is_first {
             let outwards = sub(self.center(t), point);
             let length = dot(outwards, outwards).sqrt();
             let normal = if length > 0.0 { scale(1.0 / length, outwards) } else { [0.0; 3] };
             let (point, normal) = (single(point), single(normal));
-            self.hit = Some(SphereHit { t: rounded, point, normal, primitive });
+            self.hit = Some(SphereHit { t: rounded, point, normal, primitive, instance });
         }
     }
 }

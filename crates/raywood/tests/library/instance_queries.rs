@@ -2,11 +2,74 @@
 
 use std::sync::Arc;
 
-use raywood::{Bvh, Frustum, Instance, SimdLevel, Tlas, Transform, TriangleMesh, Vec3};
+use raywood::{Bvh, Frustum, Instance, Ray, SimdLevel, Tlas, Transform, TriangleMesh, Vec3};
 use raywood_testkit::{Rng, distance, shapes};
 
 use crate::instance_space::{exact_transforms, flattened, on_lattice, overlapping, some_points};
-use crate::instances::friendly;
+use crate::instances::{friendly, nasty_transforms};
+
+/// Pairs of points in and around a scene.
+fn some_ways(bounds: &raywood::Aabb, count: usize, seed: u64) -> Vec<Ray> {
+    let (from, to) = (some_points(bounds, count, seed), some_points(bounds, count, seed + 1));
+    let ways = from.into_iter().zip(to).filter(|(from, to)| from != to);
+    ways.map(|(from, to)| Ray::new(from, 0.5 * (to - from))).collect()
+}
+
+#[test]
+fn moving_spheres_touch_what_they_do_in_the_flattened_scene_to_the_bit() {
+    for level in SimdLevel::available() {
+        let both = flattened(on_lattice(20, 21), &exact_transforms(), u32::MAX, level);
+        let mut touched = 0;
+        for (i, ray) in some_ways(&both.scene.bounds(), 800, 22).into_iter().enumerate() {
+            let ray = ray.with_interval([0.0, -1.0][i % 2], [100.0, 2.0][i / 2 % 2]);
+            let radius = [0.125, 0.0, 1.5][i % 3];
+            let expected = both.flat.sphere_cast(&ray, radius).map(|hit| {
+                let (instance, primitive) = both.numbers(hit.primitive);
+                raywood::SphereHit { instance, primitive, ..hit }
+            });
+            assert_eq!(both.scene.sphere_cast(&ray, radius), expected, "{ray:?}, {radius}");
+            touched += usize::from(expected.is_some());
+        }
+        assert!(touched > 100, "only {touched}");
+    }
+}
+
+#[test]
+fn moving_spheres_stay_spheres_under_any_transform() {
+    let mut rng = Rng::new(23);
+    let mesh = shapes::soup(40, 0.5, 24);
+    let object = Arc::new(Bvh::build(mesh.clone()).expect("it builds"));
+    let outer =
+        Transform::rotation([1.0, 2.0, 3.0], 33.0).then(&Transform::scaling([3.0, 1.0, -0.2]));
+    let mut touched = 0;
+    for transform in friendly(&mut rng).into_iter().chain(nasty_transforms(&mut rng)) {
+        let alone = Tlas::build(vec![Instance::new(Arc::clone(&object), transform)]);
+        let alone = Arc::new(alone.expect("a good transform"));
+        let nested = Tlas::build(vec![Instance::new(Arc::clone(&alone), outer)]).expect("good");
+        let flat = shapes::mapped(&mesh, |p| outer.point(transform.point(p)));
+        let bounds = flat.total_bounds();
+        let reach = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element());
+        for ray in some_ways(&bounds, 40, rng.bits()) {
+            let radius = rng.range(0.0, 0.1) * bounds.diagonal();
+            let tolerance = 1e-5 * (reach + f64::from(radius + ray.origin.abs().max_element()));
+            let found = nested.sphere_cast(&ray, radius);
+            let gap = |t: f32| distance::to_mesh(ray.at(t), &flat) - f64::from(radius);
+            let end = found.map_or(4.0, |hit| hit.t);
+            for step in 0..20 {
+                let t = end * step as f32 / 20.0;
+                let is_free = t == end || gap(t) >= -tolerance;
+                assert!(is_free, "{} at {t} before {found:?} of {ray:?}", gap(t));
+            }
+            if let Some(hit) = found {
+                touched += 1;
+                let own = distance::to_triangle(ray.at(hit.t), flat.corners(hit.primitive));
+                let off = own - f64::from(radius);
+                assert!(off <= tolerance && (hit.t == 0.0 || off >= -tolerance), "{off}: {hit:?}");
+            }
+        }
+    }
+    assert!(touched > 100, "only {touched}");
+}
 
 #[test]
 fn what_touches_frustums_and_triangles_is_that_of_the_flattened_scene() {

@@ -53,7 +53,7 @@ fn no_sooner_and_no_later_than_brute_force_says() {
                 }
 
                 // And something then: the radius away, or overlapping at the start.
-                if let Some(SphereHit { t, point, normal, primitive }) = found {
+                if let Some(SphereHit { t, point, normal, primitive, .. }) = found {
                     hits += 1;
                     assert!(ray.t_min <= t && t < ray.t_max, "{what}");
                     let center = ray.at(t);

@@ -125,9 +125,14 @@ impl Slabs {
     }
 
     /// Those of the same ray among boxes that are larger by `margin` on all sides.
-    pub(super) fn around(mut self, margin: f32) -> Self {
-        let margin = margin + margin * PRODUCT_ERROR * 8.0;
-        for axis in 0..3 {
+    pub(super) fn around(self, margin: f32) -> Self {
+        self.around_each([margin; 3])
+    }
+
+    /// Those of the same ray among boxes that are larger by so much on both sides along each axis.
+    pub(super) fn around_each(mut self, margins: [f32; 3]) -> Self {
+        for (axis, margin) in margins.into_iter().enumerate() {
+            let margin = margin + margin * PRODUCT_ERROR * 8.0;
             let wider = margin * self.reciprocal[axis].abs();
             // Finite, so that no child that is not there is met.
             self.entry[axis] = (self.entry[axis] - wider).max(f32::MIN);

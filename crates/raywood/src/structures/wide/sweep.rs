@@ -8,7 +8,7 @@ use super::slabs::Slabs;
 use crate::PreparedRay;
 use crate::simd::Simd;
 
-/// A search for what a moving sphere touches first. Boxes are larger by its radius, and it is a point.
+/// A search for what a moving sphere, or an ellipsoid, touches first. Boxes are larger by its radius along each axis, and it is a point.
 pub(crate) struct Sweep<F> {
     slabs: Slabs,
     limit: f32,
@@ -16,12 +16,13 @@ pub(crate) struct Sweep<F> {
 }
 
 impl<F> Sweep<F> {
-    /// That of a sphere whose centre moves along a ray. `test` is told of a leaf and a lane that may be touched, and returns how far to look from then on.
-    pub(crate) fn new<'t>(ray: &PreparedRay, radius: f32, reach: f32, test: F) -> Self
+    /// That of one whose centre moves along a ray. `test` is told of a leaf and a lane that may be touched, and returns how far to look from then on.
+    pub(crate) fn new<'t>(ray: &PreparedRay, radii: [f32; 3], reach: f32, test: F) -> Self
     where
         F: FnMut(&Leaf<'t>, usize) -> f32,
     {
-        let slabs = Slabs::new(ray, reach + radius).around(radius);
+        let largest = radii[0].max(radii[1]).max(radii[2]);
+        let slabs = Slabs::new(ray, reach + largest).around_each(radii);
         Self { slabs, limit: ray.t_max, test }
     }
 }

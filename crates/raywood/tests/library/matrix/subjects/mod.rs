@@ -59,9 +59,9 @@ fn found_point(closest: ClosestPoint) -> FoundPoint {
 }
 
 fn found_contact(contact: SphereHit) -> FoundPoint {
-    let SphereHit { t, point, primitive, .. } = contact;
+    let SphereHit { t, point, primitive, instance, .. } = contact;
     let point = point.to_array().map(f64::from);
-    FoundPoint { point, distance: f64::from(t), instance: 0, primitive }
+    FoundPoint { point, distance: f64::from(t), instance, primitive }
 }
 
 fn towards_point(rays: &[Ray], trace: impl FnOnce(Vec3, &[Vec3], &mut [bool])) -> Answers {

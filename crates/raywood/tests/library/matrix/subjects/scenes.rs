@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use raywood::{
-    Aabb, Ball, Bvh, Hit, HitColumns, Instance, SceneRegion, Searchable, SimdLevel, Tlas, Vec3,
+    Aabb, Ball, Bvh, Hit, HitColumns, Instance, Ray, SceneRegion, Searchable, SimdLevel, Tlas, Vec3,
 };
 
 use super::{
-    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_point, frustum, hit_queries,
-    is_for_packets, sorted, towards_point,
+    Answers, BATCHES_TAKE_NONE, Offered, Subject, found, found_contact, found_point, frustum,
+    hit_queries, is_for_packets, sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, MASK, Query, keeps};
 use crate::matrix::geometries::Shared;
@@ -179,9 +179,16 @@ impl<B: Searchable> Subject for Tlas<B> {
                 let others = 0..questions.others.len();
                 Answers::Touching(others.map(|n| touching(self, &questions.other(n))).collect())
             }
-            Query::TreeOverlap | Query::SphereCast | Query::SphereCastBatch | Query::Visit => {
-                return Err(IN_ITS_OBJECT);
+            Query::SphereCast => {
+                let cast = |ray: &Ray| self.sphere_cast(ray, questions.radius as f32);
+                Answers::Casts(rays.iter().map(|ray| cast(ray).map(found_contact)).collect())
             }
+            Query::SphereCastBatch => {
+                let mut hits = vec![None; rays.len()];
+                self.sphere_cast_batch(&rays, questions.radius as f32, &mut hits);
+                Answers::Casts(hits.into_iter().map(|hit| hit.map(found_contact)).collect())
+            }
+            Query::TreeOverlap | Query::Visit => return Err(IN_ITS_OBJECT),
             Query::Closest
             | Query::Any
             | Query::AllHits
