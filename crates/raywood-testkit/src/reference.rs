@@ -650,8 +650,13 @@ impl Reference {
             all.fold(f64::INFINITY, f64::min)
         };
         let speed = length(ray.direction);
-        let reach = ray.origin.iter().fold(self.size, |largest, x| largest.max(x.abs()));
-        let tolerance = 1e-5 * (radius + reach);
+        let largest = ray.origin.iter().fold(self.size, |largest, x| largest.max(x.abs()));
+        let is_single = self.epsilon > 1e-10;
+        let reach = if is_single { largest } else { self.size };
+        let tolerance = match is_single {
+            true => 1e-5 * (radius + reach),
+            false => 1e-8 * (radius + reach) + 2f64.powi(-50) * largest,
+        };
         let end = answer.map_or(ray.t_max.min(4.0 * reach / speed), |found| found.distance);
         for step in 0..16 {
             let t = ray.t_min + (end - ray.t_min) * f64::from(step) / 16.0;

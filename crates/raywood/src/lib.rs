@@ -27,7 +27,8 @@
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be: rays, [options](Tlas::intersect_with), [all hits](Tlas::all_hits),
 //!   [closest points](Tlas::closest_point), [insides](Tlas::solid), [overlaps](Tlas::overlapping) and [moving spheres](Tlas::sphere_cast) go through them.
-//! - [`Bvh64`] takes meshes in double precision, where single precision cannot tell points apart.
+//! - [`Bvh64`] takes meshes in double precision, where single precision cannot tell points apart: with hits of all kinds, [closest points](Bvh64::closest_point), [insides](Bvh64::solid),
+//!   [overlaps](Bvh64::overlapping) and [moving spheres](Bvh64::sphere_cast).
 //! - What moves need not be built anew: [`Bvh::refit`] makes new boxes, [`DynamicBvh`] looks after the quality of the tree as well, and [`Tlas::update`] does for instances.
 //! - A tree can be [saved](Bvh::save) with its mesh and [loaded](Bvh::load) where it lies in memory, or [with more](SavedTree): a mapped file of a million triangles answers its first ray within milliseconds.
 //! - [`Structure`] is any of the textbook's structures, chosen by [`StructureKind`]: for comparing.
@@ -76,9 +77,9 @@ pub use aabb::Aabb;
 pub use build::{BuildMemory, BuildOptions, BuildPreset, Builder, TriangleTest};
 pub use bvh::Bvh;
 pub use change::{Decision, DynamicBvh, RefitError, Update, UpdateOptions};
-pub use doubles::Solid64;
 pub use doubles::{Aabb64, Ball64, Frustum64, Region64};
 pub use doubles::{Bvh64, ClosestPoint64, Hit64, Ray64, SurfacePoint64, TriangleMesh64};
+pub use doubles::{Solid64, SphereHit64};
 pub use error::BuildError;
 pub use geometry::{
     Assembly, Boxes, Capsule, Capsules, Cylinder, Cylinders, Disc, Discs, Quads, ShapeError,

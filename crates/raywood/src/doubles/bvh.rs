@@ -30,7 +30,7 @@ use crate::{TriangleMesh, parallel};
 /// are as seen from there: where a triangle is smaller than a few millionths of the whole, so that single precision cannot tell it from its neighbours, rays ask all of these. Such a mesh should be
 /// cut into several.
 ///
-/// Hits of all kinds, closest points, what is [inside](Self::solid) and what [overlaps](Self::overlapping) a region or another mesh are all there is so far: moving spheres, instances, refit and saving are for [`Bvh`](crate::Bvh) alone.
+/// Hits of all kinds, closest points, what is [inside](Self::solid), what [overlaps](Self::overlapping) a region or another mesh and [moving spheres](Self::sphere_cast) are all there is so far: walks of one's own, instances, refit and saving are for [`Bvh`](crate::Bvh) alone.
 #[derive(Clone, Debug)]
 pub struct Bvh64 {
     pub(super) mesh: TriangleMesh64,

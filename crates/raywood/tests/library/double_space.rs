@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use raywood::Bvh64;
+use raywood::{Bvh64, Ray64};
 use raywood_testkit::Rng;
 
 use crate::doubles::{PLACES, add, bumpy, in_cube, scaled, sub};
@@ -60,6 +60,43 @@ fn inside_is_told_right_next_to_the_surface() {
             assert_eq!(solid.signed_distance([0.0, bad, 0.0]), None);
         }
     }
+}
+
+#[test]
+fn moving_spheres_stop_where_something_is_a_radius_away() {
+    let mut rng = Rng::new(102);
+    let mut touched = 0;
+    for (at, size) in PLACES {
+        let mesh = bumpy(3, at, size, &mut rng);
+        let bvh = Bvh64::build(mesh).expect("it builds");
+        for number in 0..200 {
+            let place = |rng: &mut Rng, reach: f64| add(at, scaled(reach * size, in_cube(rng)));
+            let (from, to) = (place(&mut rng, 3.0), place(&mut rng, 1.5));
+            let ray = Ray64::new(from, scaled(0.5, sub(to, from))).with_interval(0.0, 4.0);
+            let radius = [0.0, 0.01, 0.3][number % 3] * size;
+            let gap = |t: f64| {
+                bvh.closest_point(ray.at(t), f64::INFINITY).expect("a mesh").distance - radius
+            };
+            let tolerance = size * (1e-11 + 256.0 * step(at, size));
+            let found = bvh.sphere_cast(&ray, radius);
+            let end = found.map_or(4.0, |hit| hit.t);
+            for step in 0..20 {
+                let t = end * f64::from(step) / 20.0;
+                assert!(t == end || gap(t) >= -tolerance, "{} at {t} before {found:?}", gap(t));
+            }
+            let Some(hit) = found else { continue };
+            touched += 1;
+            assert!(gap(hit.t) <= tolerance, "{} of {hit:?} at {at:?}", gap(hit.t));
+            let apart = sub(ray.at(hit.t), hit.point);
+            assert!((dot(apart, apart).sqrt() - radius).abs() <= tolerance || hit.t == 0.0);
+        }
+        let ray = Ray64::new(at, [0.0, 0.0, size]);
+        for bad in [-1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(bvh.sphere_cast(&ray, bad), None);
+        }
+        assert_eq!(bvh.sphere_cast(&Ray64::new(at, [0.0; 3]), size), None);
+    }
+    assert!(touched > 300, "only {touched}");
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use raywood::{Aabb64, Ball64, Bvh64, ClosestPoint64, Frustum64, Hit64, Region64, TriangleMesh64};
+use raywood::{
+    Aabb64, Ball64, Bvh64, ClosestPoint64, Frustum64, Hit64, Ray64, Region64, SphereHit64,
+    TriangleMesh64,
+};
 use raywood_testkit::reference::{Found, FoundPoint};
 
 use super::{Answers, BATCHES_TAKE_NONE, Offered, Subject, hit_queries, sorted};
@@ -21,6 +24,11 @@ fn balls(questions: &Questions) -> Vec<Ball64> {
 fn found_point(closest: ClosestPoint64) -> FoundPoint {
     let ClosestPoint64 { point, distance, primitive, .. } = closest;
     FoundPoint { point, distance, instance: 0, primitive }
+}
+
+fn found_contact(contact: SphereHit64) -> FoundPoint {
+    let SphereHit64 { t, point, primitive, .. } = contact;
+    FoundPoint { point, distance: t, instance: 0, primitive }
 }
 
 /// What touches a region, in order.
@@ -143,9 +151,16 @@ impl Subject for Bvh64 {
                 assert_eq!(self.overlaps_any_of(&other), told.iter().any(|t| !t.is_empty()));
                 Answers::Touching(told.into_iter().map(sorted).collect())
             }
-            Query::SphereCast | Query::SphereCastBatch | Query::Visit => {
-                return Err("not in double precision yet");
+            Query::SphereCast => {
+                let cast = |ray: &Ray64| self.sphere_cast(ray, questions.radius);
+                Answers::Casts(rays.iter().map(|ray| cast(ray).map(found_contact)).collect())
             }
+            Query::SphereCastBatch => {
+                let mut hits = vec![None; rays.len()];
+                self.sphere_cast_batch(&rays, questions.radius, &mut hits);
+                Answers::Casts(hits.into_iter().map(|hit| hit.map(found_contact)).collect())
+            }
+            Query::Visit => return Err("not in double precision yet"),
             Query::Closest
             | Query::Any
             | Query::AllHits
