@@ -360,6 +360,20 @@ impl Reference {
         Some((first.0.instance, first.0.primitive))
     }
 
+    /// The least and the largest coordinates of a primitive where it stands.
+    ///
+    /// # Panics
+    ///
+    /// If there is none of these numbers.
+    pub fn box_of(&self, instance: u32, primitive: u32) -> [Point; 2] {
+        let entry = &self.entries[self.place(instance, primitive).expect("an entry")];
+        let corners = match entry.shape {
+            Shape::Triangle(corners) => corners.to_vec(),
+            Shape::Solid(solid) => solid.bounds().to_vec(),
+        };
+        box_around(corners.into_iter().map(|p| entry.placement.point(p)))
+    }
+
     /// How much larger or smaller regions may be taken.
     pub fn margin(&self) -> f64 {
         if self.epsilon > 1e-10 { 1e-9 } else { 1e-12 * self.size }

@@ -26,7 +26,7 @@
 //! - It also finds [all hits](Bvh::all_hits), each crossing of a surface exactly once, and the [nearest few](Bvh::nearest_hits); and [`QueryOptions`] say which
 //!   hits count: of one side, of some primitives, those that a filter of your own accepts.
 //! - [`Tlas`] puts instances of trees into one scene, each at its place by a [`Transform`], on several levels if need be: rays, [options](Tlas::intersect_with), [all hits](Tlas::all_hits),
-//!   [closest points](Tlas::closest_point), [insides](Tlas::solid), [overlaps](Tlas::overlapping) and [moving spheres](Tlas::sphere_cast) go through them.
+//!   [closest points](Tlas::closest_point), [insides](Tlas::solid), [overlaps](Tlas::overlapping), [moving spheres](Tlas::sphere_cast) and [walks](Tlas::visit) go through them.
 //! - [`Bvh64`] takes meshes in double precision, where single precision cannot tell points apart: with hits of all kinds, [closest points](Bvh64::closest_point), [insides](Bvh64::solid),
 //!   [overlaps](Bvh64::overlapping) and [moving spheres](Bvh64::sphere_cast).
 //! - What moves need not be built anew: [`Bvh::refit`] makes new boxes, [`DynamicBvh`] looks after the quality of the tree as well, and [`Tlas::update`] does for instances.
@@ -94,8 +94,8 @@ pub use hit::Hit;
 pub use hit_columns::{HitColumns, HitColumnsMut};
 pub use instances::{
     BoundsMargin, Enclosure, FrustumSearch, InsideSearch, Instance, InstanceError, ObjectPoint,
-    SceneRegion, SceneSolid, Searchable, SpaceSearch, SweptSearch, Tlas, Traceable, Transform,
-    TransformError,
+    PairSearch, SceneRegion, SceneSolid, Searchable, SpaceSearch, SweptSearch, Tlas, Traceable,
+    Transform, TransformError, WalkSearch,
 };
 pub use query::{AcceptAll, Face, HitFilter, HitLists, HitRules, QueryOptions};
 pub use query::{Ball, ClosestPoint, Frustum, Region, Solid, SphereHit};

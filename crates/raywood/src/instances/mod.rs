@@ -8,6 +8,7 @@ mod error;
 mod frustum;
 mod many;
 mod overlap;
+mod pairs;
 mod place;
 mod point;
 mod solid;
@@ -17,6 +18,7 @@ mod towards;
 mod traceable;
 mod transform;
 mod view;
+mod walk;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -24,6 +26,7 @@ use std::sync::Arc;
 pub use error::InstanceError;
 pub use frustum::FrustumSearch;
 pub use overlap::SceneRegion;
+pub use pairs::PairSearch;
 use place::Placement;
 pub use point::ObjectPoint;
 pub use solid::{Enclosure, InsideSearch, SceneSolid};
@@ -31,6 +34,7 @@ pub use space::{Searchable, SpaceSearch};
 pub use sphere_cast::SweptSearch;
 pub use traceable::{BoundsMargin, Traceable};
 pub use transform::{Transform, TransformError};
+pub use walk::WalkSearch;
 
 use crate::structures::wide::top::TopTree;
 use crate::{

@@ -6,18 +6,21 @@
 use std::ops::ControlFlow;
 
 use super::frustum::FrustumSearch;
+use super::pairs::PairSearch;
 use super::place::Placement;
 use super::solid::{Enclosure, InsideSearch};
 use super::sphere_cast::SweptSearch;
 use super::view::{Limits, View};
+use super::walk::WalkSearch;
 use super::{Tlas, Traceable, Transform};
-use crate::double::{Double3, add, cross, dot, double, scale};
+use crate::double::{Double3, add, cross, dot, double, largest_magnitude, scale};
+use crate::geometry::round_down;
 use crate::simd::{Float, Kernel, Simd, SimdLevel, dispatch_on};
 use crate::structures::WideNode;
 use crate::structures::wide::parts::Told;
 use crate::structures::wide::search::{Leaf, Query, SearchStack, planes};
 use crate::structures::wide::top::TopQuery;
-use crate::{Bvh, Geometry, WideBvh};
+use crate::{Aabb, Bvh, Geometry, Vec3, WideBvh};
 
 /// An affine transform in double precision: what transforms of several levels are together.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +71,33 @@ impl Affine {
     }
 }
 
+/// The rounding of coordinates in double precision, per unit of their largest term.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 impl Affine {
+    /// An upright box around one that is placed: rounded outwards, and larger by `slack` for each unit of the largest coordinate, or of `farthest`. Finite, of a finite one.
+    pub(super) fn bounds(&self, bounds: &Aabb, slack: f64, farthest: f64) -> Aabb {
+        let (low, high) = (double(bounds.min), double(bounds.max));
+        let [mut min, mut max] = [[0.0; 3]; 2];
+        let mut terms = [0.0; 3];
+        for axis in 0..3 {
+            let row = &self.rows[axis];
+            let (mut least, mut greatest, mut term) = (row[3], row[3], row[3].abs());
+            for column in 0..3 {
+                let (a, b) = (row[column] * low[column], row[column] * high[column]);
+                least += a.min(b);
+                greatest += a.max(b);
+                term += a.abs().max(b.abs());
+            }
+            (min[axis], max[axis], terms[axis]) = (least, greatest, term);
+        }
+        let margin = (slack + ROUNDING) * largest_magnitude(terms) + slack * farthest;
+        Aabb {
+            min: Vec3::from(min.map(|x| round_down(x - margin).max(f32::MIN))),
+            max: Vec3::from(max.map(|x| -round_down(-(x + margin)).max(f32::MIN))),
+        }
+    }
+
     /// Where points come from, whatever transform this is; `None` where no numbers are large enough.
     pub(super) fn back_in_general(&self, points: [Double3; 3]) -> Option<[Double3; 3]> {
         let row = |i: usize| [self.rows[i][0], self.rows[i][1], self.rows[i][2]];
@@ -134,6 +163,12 @@ pub trait Searchable: Traceable {
     /// Looks for what a moving sphere touches first.
     fn search_swept(&self, search: &mut SweptSearch<'_>);
 
+    /// Tells of what touches another geometry.
+    fn search_pairs(&self, search: &mut PairSearch<'_>) -> ControlFlow<()>;
+
+    /// Walks through the boxes.
+    fn walk_boxes(&self, walk: &mut WalkSearch<'_>) -> ControlFlow<()>;
+
     /// Sums up what [`encloses`](Self::encloses) needs to know. O(N).
     fn enclosure(&self) -> Enclosure;
 
@@ -163,6 +198,14 @@ impl<B: Searchable> Searchable for Tlas<B> {
 
     fn search_swept(&self, search: &mut SweptSearch<'_>) {
         search.through_scene(self);
+    }
+
+    fn search_pairs(&self, search: &mut PairSearch<'_>) -> ControlFlow<()> {
+        search.through_scene(self)
+    }
+
+    fn walk_boxes(&self, walk: &mut WalkSearch<'_>) -> ControlFlow<()> {
+        walk.through_scene(self)
     }
 
     fn enclosure(&self) -> Enclosure {
@@ -238,6 +281,14 @@ impl<G: Geometry + Send> Searchable for Bvh<G> {
 
     fn search_swept(&self, search: &mut SweptSearch<'_>) {
         search.through_tree(self);
+    }
+
+    fn search_pairs(&self, search: &mut PairSearch<'_>) -> ControlFlow<()> {
+        search.through_tree(self)
+    }
+
+    fn walk_boxes(&self, walk: &mut WalkSearch<'_>) -> ControlFlow<()> {
+        walk.through_tree(self)
     }
 
     fn enclosure(&self) -> Enclosure {

@@ -1,8 +1,11 @@
 //! Questions about space to scenes of instances, on several levels: moving spheres, frustums, triangles, other geometries, insides.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use raywood::{Bvh, Frustum, Instance, Ray, SimdLevel, Tlas, Transform, TriangleMesh, Vec3};
+use raywood::{
+    Bvh, Frustum, Instance, Ray, SimdLevel, Spheres, Tlas, Transform, TriangleMesh, Vec3,
+};
 use raywood_testkit::{Rng, distance, shapes};
 
 use crate::instance_space::{exact_transforms, flattened, on_lattice, overlapping, some_points};
@@ -108,6 +111,57 @@ fn what_touches_frustums_and_triangles_is_that_of_the_flattened_scene() {
         assert!(overlapping(&both.scene, &[Vec3::splat(f32::INFINITY); 3]).is_empty());
     }
     assert!(found > 500, "only {found}");
+}
+
+#[test]
+fn what_touches_another_geometry_is_that_of_the_flattened_scene() {
+    let mut found = 0;
+    for level in SimdLevel::available() {
+        let both = flattened(on_lattice(20, 28), &exact_transforms(), u32::MAX, level);
+        let large = shapes::mapped(&shapes::soup(60, 0.7, 29), |p| 4.0 * p);
+        let other = Bvh::build(large).expect("it builds");
+        let mut expected = Vec::new();
+        let _ = both.flat.overlapping_pairs(&other, |own, other| {
+            expected.push((both.numbers(own), other));
+            ControlFlow::Continue(())
+        });
+        let mut pairs = Vec::new();
+        let _ = both.scene.overlapping_pairs(&other, |instance, own, other| {
+            pairs.push(((instance, own), other));
+            ControlFlow::Continue(())
+        });
+        expected.sort_unstable();
+        pairs.sort_unstable();
+        assert_eq!(pairs, expected);
+        assert!(both.scene.overlaps_any_of(&other));
+        found += pairs.len();
+
+        // Of spheres at least those that the surface passes through.
+        let balls: Vec<_> = large_balls();
+        let spheres = Bvh::build(Spheres::new(balls.clone()).expect("sound")).expect("it builds");
+        let mut pairs = Vec::new();
+        let _ = both.scene.overlapping_pairs(&spheres, |instance, own, ball| {
+            pairs.push(((instance, own), ball));
+            ControlFlow::Continue(())
+        });
+        for (number, &(center, radius)) in (0..).zip(&balls) {
+            for triangle in 0..both.flat.geometry().triangles().len() as u32 {
+                let corners = both.flat.geometry().corners(triangle);
+                let heights = corners.map(|p| (p - center).length() - radius);
+                let [a, b, c] = heights;
+                let passes = a.min(b).min(c) < -1e-3 && a.max(b).max(c) > 1e-3;
+                let pair = (both.numbers(triangle), number);
+                assert!(!passes || pairs.contains(&pair), "{pair:?}");
+            }
+        }
+        assert!(pairs.len() < balls.len() * both.flat.geometry().triangles().len() / 4);
+    }
+    assert!(found > 100, "only {found}");
+}
+
+fn large_balls() -> Vec<(Vec3, f32)> {
+    let mut rng = Rng::new(30);
+    (0..8).map(|_| (4.0 * rng.in_cube(), rng.range(0.5, 1.5))).collect()
 }
 
 #[test]

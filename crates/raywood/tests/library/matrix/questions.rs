@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use raywood::{Geometry, Ray, Ray64, TriangleMesh, Vec3};
+use raywood::{Aabb, Geometry, Ray, Ray64, TriangleMesh, Vec3};
 use raywood_testkit::Rng;
 use raywood_testkit::placement::Placement;
 use raywood_testkit::reference::{Entry, Met, Reference, Region, Shape, in_double};
@@ -354,6 +354,19 @@ impl Questions {
         let mut center = self.views[number].0;
         center[number % 3] += self.unit;
         Region::Planes(self.planes(number).to_vec(), self.reference.margin(), center)
+    }
+
+    /// The box around a primitive of a scene where it stands.
+    pub(crate) fn box_of(&self, instance: u32, primitive: u32) -> Aabb {
+        let [min, max] = self.reference.box_of(instance, primitive).map(|p| p.map(|x| x as f32));
+        Aabb::new(min, max)
+    }
+
+    /// The least distance of a point from any box of a scene, by asking all.
+    pub(crate) fn nearest_of_all(&self, number: usize) -> f32 {
+        let boxes = self.reference.entries.iter().map(|e| self.box_of(e.instance, e.primitive));
+        let point = self.point(number);
+        boxes.map(|b| super::distance_of_box(point, &b)).fold(f32::INFINITY, f32::min)
     }
 
     /// The least distance of a point from any primitive's box, by asking all.

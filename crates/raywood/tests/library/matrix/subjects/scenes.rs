@@ -12,6 +12,7 @@ use super::{
     hit_queries, is_for_packets, sorted, towards_point,
 };
 use crate::matrix::axes::{Choice, MASK, Query, keeps};
+use crate::matrix::distance_of_box;
 use crate::matrix::geometries::Shared;
 use crate::matrix::questions::{Placed, Questions, outer_places, places};
 
@@ -37,9 +38,6 @@ pub(crate) fn two_levels(bvh: Bvh<Shared>) -> Tlas<Tlas<Bvh<Shared>>> {
     let level = bvh.simd_level();
     scene(scene(bvh, &places()[1..5], level), &outer_places(), level)
 }
-
-const IN_ITS_OBJECT: &str =
-    "not for scenes yet: ask the `Bvh` of each instance, in the space of that";
 
 /// What touches a region, in order.
 fn touching<B: Searchable>(scene: &Tlas<B>, region: &impl SceneRegion) -> Vec<(u32, u32)> {
@@ -179,6 +177,17 @@ impl<B: Searchable> Subject for Tlas<B> {
                 let others = 0..questions.others.len();
                 Answers::Touching(others.map(|n| touching(self, &questions.other(n))).collect())
             }
+            Query::TreeOverlap => {
+                let other = Bvh::build(questions.mesh_of_others()).expect("it builds");
+                let mut told = vec![Vec::new(); questions.others.len()];
+                let flow = self.overlapping_pairs(&other, |instance, own, others| {
+                    told[others as usize].push((instance, own));
+                    ControlFlow::Continue(())
+                });
+                assert!(flow.is_continue());
+                assert_eq!(self.overlaps_any_of(&other), told.iter().any(|t| !t.is_empty()));
+                Answers::Touching(told.into_iter().map(sorted).collect())
+            }
             Query::SphereCast => {
                 let cast = |ray: &Ray| self.sphere_cast(ray, questions.radius as f32);
                 Answers::Casts(rays.iter().map(|ray| cast(ray).map(found_contact)).collect())
@@ -188,7 +197,21 @@ impl<B: Searchable> Subject for Tlas<B> {
                 self.sphere_cast_batch(&rays, questions.radius as f32, &mut hits);
                 Answers::Casts(hits.into_iter().map(|hit| hit.map(found_contact)).collect())
             }
-            Query::TreeOverlap | Query::Visit => return Err(IN_ITS_OBJECT),
+            Query::Visit => {
+                let one = |number: usize| {
+                    let (point, mut least) = (questions.point(number), f32::INFINITY);
+                    let bound = |bounds: &Aabb| Some(distance_of_box(point, bounds));
+                    let flow = self.visit(bound, |instance, primitive| {
+                        let bounds = questions.box_of(instance, primitive);
+                        least = least.min(distance_of_box(point, &bounds));
+                        ControlFlow::Continue(least)
+                    });
+                    assert!(flow.is_continue());
+                    (least, questions.nearest_of_all(number))
+                };
+                let is_finite = |&n: &usize| questions.point(n).is_finite();
+                Answers::Boxes(points().filter(is_finite).map(one).collect())
+            }
             Query::Closest
             | Query::Any
             | Query::AllHits
