@@ -92,7 +92,7 @@ impl<B: Traceable> Placement<B> {
         rules: &HitRules,
         accepts: &mut dyn FnMut(&Hit) -> bool,
     ) -> Option<Hit> {
-        let seen = self.inverse.ray(ray);
+        let seen = self.seen_at(ray, rules.time);
         let mut accepts = |hit: &Hit| {
             // What lies beyond may be found, but nobody is asked of it.
             let hit = self.in_scene(hit, &seen);
@@ -110,7 +110,7 @@ impl<B: Traceable> Placement<B> {
         rules: &HitRules,
         accepts: &mut dyn FnMut(&Hit) -> bool,
     ) -> bool {
-        let seen = self.inverse.ray(ray);
+        let seen = self.seen_at(ray, rules.time);
         let mut accepts = |hit: &Hit| accepts(&self.in_scene(hit, &seen));
         self.object.occluded_chosen(&seen.ray, rules, &mut accepts)
     }

@@ -149,7 +149,7 @@ impl<B: Traceable> Tlas<B> {
     ) -> ControlFlow<()> {
         let Some(prepared) = PreparedRay::new(ray) else { return ControlFlow::Continue(()) };
         self.walk(ray, &prepared, limit, rules.mask, |place, limit| {
-            let seen = place.inverse.ray(ray);
+            let seen = place.seen_at(ray, rules.time);
             let mut left = limit;
             place.object.visit_hits(&seen.ray, seen.limit(limit), rules, &mut |hit| {
                 left = left.min(visit(place.in_scene(&hit, &seen))?);

@@ -1,6 +1,7 @@
 //! Batches of rays through scenes of instances: those that meet an instance go there together.
 
 use super::place::{Placement, is_nearer};
+use super::times::{AtStart, When};
 use super::{Built, Tlas, Traceable};
 use crate::structures::wide::top_many::{DONE, Visitor};
 use crate::{Hit, PreparedRay, Ray};
@@ -14,18 +15,40 @@ const FEWEST_TOGETHER: usize = 128;
 impl<B: Traceable> Tlas<B> {
     /// The closest hits of at most [`MOST`] rays with what the mask lets see.
     pub(super) fn closest_of_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {
+        self.closest_of_many_when(AtStart, rays, mask, hits);
+    }
+
+    /// The same, each at its time.
+    pub(super) fn closest_of_many_when(
+        &self,
+        when: impl When,
+        rays: &[Ray],
+        mask: u32,
+        hits: &mut [Option<Hit>],
+    ) {
         hits.fill(None);
         let placements = &self.built.placements[..];
-        let visitor =
-            Closest { placements, rays, mask, hits, seen: vec![], numbers: vec![], found: vec![] };
+        let (seen, numbers, found) = (vec![], vec![], vec![]);
+        let visitor = Closest { placements, when, rays, mask, hits, seen, numbers, found };
         self.built.tree.walk_many(self.level, &self.built.prepared(rays), visitor);
     }
 
     /// Whether anything that the mask lets see blocks rays, at most [`MOST`].
     pub(super) fn any_of_many(&self, rays: &[Ray], mask: u32, occluded: &mut [bool]) {
+        self.any_of_many_when(AtStart, rays, mask, occluded);
+    }
+
+    /// The same, each at its time.
+    pub(super) fn any_of_many_when(
+        &self,
+        when: impl When,
+        rays: &[Ray],
+        mask: u32,
+        occluded: &mut [bool],
+    ) {
         occluded.fill(false);
         let placements = &self.built.placements[..];
-        let visitor = Any { placements, rays, mask, occluded, seen: vec![], found: vec![] };
+        let visitor = Any { placements, when, rays, mask, occluded, seen: vec![], found: vec![] };
         self.built.tree.walk_many(self.level, &self.built.prepared(rays), visitor);
     }
 }
@@ -38,8 +61,9 @@ impl<B> Built<B> {
 }
 
 /// Looks for closest hits.
-struct Closest<'a, B> {
+struct Closest<'a, B, W> {
     placements: &'a [Placement<B>],
+    when: W,
     rays: &'a [Ray],
     mask: u32,
     hits: &'a mut [Option<Hit>],
@@ -49,7 +73,7 @@ struct Closest<'a, B> {
     found: Vec<Option<Hit>>,
 }
 
-impl<B> Closest<'_, B> {
+impl<B, W> Closest<'_, B, W> {
     /// Takes a hit if it is nearer than what the ray has; returns the ray's limit from there on.
     #[inline(always)]
     fn take(&mut self, ray: u32, hit: Option<Hit>, limit: f32) -> f32 {
@@ -64,15 +88,17 @@ impl<B> Closest<'_, B> {
     }
 }
 
-impl<B: Traceable> Visitor for Closest<'_, B> {
+impl<B: Traceable, W: When> Visitor for Closest<'_, B, W> {
     #[inline(always)]
     fn one(&mut self, entry: u32, ray: u32, limit: f32) -> f32 {
         let place = &self.placements[entry as usize];
         if place.mask & self.mask == 0 {
             return limit;
         }
-        let hit = place.intersect(&self.rays[ray as usize], limit, self.mask);
-        self.take(ray, hit, limit)
+        let seen = self.when.seen(place, ray, &self.rays[ray as usize]);
+        let (object, within) = (&*place.object, seen.limit(limit));
+        let hit = self.when.intersect(object, ray, &seen.ray, within, self.mask);
+        self.take(ray, hit.map(|hit| place.in_scene(&hit, &seen)), limit)
     }
 
     #[inline(always)]
@@ -91,7 +117,7 @@ impl<B: Traceable> Visitor for Closest<'_, B> {
         self.numbers.clear();
         for &number in rays {
             let (ray, limit) = (&self.rays[number as usize], limits[number as usize]);
-            let seen = place.inverse.ray(ray);
+            let seen = self.when.seen(place, number, ray);
             if seen.unit == 1.0 {
                 // What lies as far as the best hit counts as well: it may be of a lower instance.
                 let t_max = ray.t_max.min(limit.next_up());
@@ -103,7 +129,8 @@ impl<B: Traceable> Visitor for Closest<'_, B> {
         }
         self.found.clear();
         self.found.resize(self.seen.len(), None);
-        place.object.intersect_many(&self.seen, self.mask, &mut self.found);
+        let Self { when, seen, numbers, found, .. } = self;
+        when.intersect_many(&*place.object, numbers, seen, self.mask, found);
         for place_of_ray in 0..self.found.len() {
             let number = self.numbers[place_of_ray];
             let hit = self.found[place_of_ray]
@@ -115,8 +142,9 @@ impl<B: Traceable> Visitor for Closest<'_, B> {
 }
 
 /// Looks for any hits.
-struct Any<'a, B> {
+struct Any<'a, B, W> {
     placements: &'a [Placement<B>],
+    when: W,
     rays: &'a [Ray],
     mask: u32,
     occluded: &'a mut [bool],
@@ -125,13 +153,15 @@ struct Any<'a, B> {
     found: Vec<bool>,
 }
 
-impl<B: Traceable> Visitor for Any<'_, B> {
+impl<B: Traceable, W: When> Visitor for Any<'_, B, W> {
     #[inline(always)]
     fn one(&mut self, entry: u32, ray: u32, limit: f32) -> f32 {
         let place = &self.placements[entry as usize];
-        let blocks =
-            place.mask & self.mask != 0 && place.occluded(&self.rays[ray as usize], self.mask);
-        if blocks {
+        if place.mask & self.mask == 0 {
+            return limit;
+        }
+        let seen = self.when.seen(place, ray, &self.rays[ray as usize]).ray;
+        if self.when.occluded(&*place.object, ray, &seen, self.mask) {
             self.occluded[ray as usize] = true;
             return DONE;
         }
@@ -151,11 +181,12 @@ impl<B: Traceable> Visitor for Any<'_, B> {
             return;
         }
         self.seen.clear();
-        let seen = |&number: &u32| place.inverse.ray(&self.rays[number as usize]).ray;
+        let seen = |&number: &u32| self.when.seen(place, number, &self.rays[number as usize]).ray;
         self.seen.extend(rays.iter().map(seen));
         self.found.clear();
         self.found.resize(rays.len(), false);
-        place.object.occluded_many(&self.seen, self.mask, &mut self.found);
+        let Self { when, seen, found, .. } = self;
+        when.occluded_many(&*place.object, rays, seen, self.mask, found);
         for (&number, &blocked) in rays.iter().zip(&self.found) {
             if blocked {
                 self.occluded[number as usize] = true;

@@ -7,6 +7,7 @@ mod crossings;
 mod error;
 mod frustum;
 mod many;
+mod motion;
 mod overlap;
 mod pairs;
 mod place;
@@ -14,6 +15,7 @@ mod point;
 mod solid;
 mod space;
 mod sphere_cast;
+mod times;
 mod towards;
 mod traceable;
 mod transform;
@@ -47,8 +49,14 @@ use crate::{
 pub struct Instance<B> {
     /// What stands there; shared with other instances.
     pub object: Arc<B>,
-    /// Where: from the object's space into the scene's.
+    /// Where: from the object's space into the scene's. Of what moves at time 0.
     pub transform: Transform,
+    /// Where it has moved to at time 1, if it moves. Between, the two matrices are [blended](Transform::blended) linearly: each point moves on a straight line at an even pace, and what turns
+    /// shrinks a little on the way, halfway by the cosine of half the angle, so large turns take shorter times or more instances. No blend may [flatten](Transform::check_motion) the object, as one
+    /// of half a turn does.
+    ///
+    /// Rays that say nothing of a time see time 0, as do closest points, overlaps and all other questions that are not asked at a [time](crate::QueryOptions::at).
+    pub later: Option<Transform>,
     /// The groups it belongs to, a bit each: a query with a mask sees it if they have a bit in common. Of none, nobody sees it.
     pub mask: u32,
     /// A number of the caller's own, such as that of a material.
@@ -58,7 +66,21 @@ pub struct Instance<B> {
 impl<B> Instance<B> {
     /// An object at a place, in all groups, its `id` zero.
     pub fn new(object: Arc<B>, transform: Transform) -> Self {
-        Self { object, transform, mask: u32::MAX, id: 0 }
+        Self { object, transform, later: None, mask: u32::MAX, id: 0 }
+    }
+
+    /// The same on its way to another place, where it is at time 1: see [`later`](Self::later).
+    #[must_use]
+    pub fn moving_to(self, later: Transform) -> Self {
+        Self { later: Some(later), ..self }
+    }
+
+    /// Whether it can stand where it is to stand, and move as it is to move.
+    fn check(&self) -> Result<(), TransformError> {
+        match &self.later {
+            None => self.transform.check(),
+            Some(later) => self.transform.check_motion(later),
+        }
     }
 }
 
@@ -98,6 +120,7 @@ impl<B> Clone for Instance<B> {
 /// - No ray slips between triangles of one instance that share an edge.
 /// - Rays of batches that meet the same instance are traced through it together, which rounds differently: [`Hit::agrees_with`] says by how much, and of equally near ones a higher instance may then be named. Answers never depend on the number of threads.
 /// - Masks are those of instances; those of primitives ([`Geometry::mask`](crate::Geometry::mask)) count where there are [options](Self::intersect_with).
+/// - Instances may [move](Instance::later): rays [at a time](Self::intersect_at) see them where they are then. Their boxes hold all that they pass through, so what moves far costs rays that pass by, at any time.
 /// - A ray hits what it hits in the object's space after its origin and direction were rounded there to single precision: `docs/numerics.md`, "Instances", has the bounds.
 #[derive(Clone, Debug)]
 pub struct Tlas<B = Bvh<TriangleMesh>> {
@@ -119,6 +142,8 @@ struct Built<B> {
     margin: BoundsMargin,
     /// How many instances there are on the lowest level.
     leaves: u32,
+    /// Whether any of them moves.
+    moves: bool,
 }
 
 impl<B> Clone for Built<B> {
@@ -156,7 +181,7 @@ impl<B: Traceable> Tlas<B> {
         &self.instances
     }
 
-    /// The box around everything; empty if there is nothing.
+    /// The box around everything, at all times; empty if there is nothing.
     pub fn bounds(&self) -> Aabb {
         self.built.tree.bounds()
     }
@@ -349,6 +374,34 @@ impl<B: Traceable> Traceable for Tlas<B> {
         visit: &mut dyn FnMut(Hit) -> ControlFlow<(), f32>,
     ) -> ControlFlow<()> {
         self.visit_crossings(ray, limit, rules, visit)
+    }
+
+    fn moves(&self) -> bool {
+        self.built.moves
+    }
+
+    #[inline]
+    fn intersect_within_at(&self, ray: &Ray, limit: f32, mask: u32, time: f32) -> Option<Hit> {
+        self.closest_at(ray, limit, mask, time)
+    }
+
+    #[inline]
+    fn occluded_within_at(&self, ray: &Ray, mask: u32, time: f32) -> bool {
+        self.any_at(ray, mask, time)
+    }
+
+    fn object_point_at(&self, ray: &Ray, hit: &Hit, time: f32) -> ObjectPoint {
+        let (index, instance) = self.locate(hit.instance);
+        let place = &self.built.placements[index];
+        place.point_at(ray, &Hit { instance, ..*hit }, time)
+    }
+
+    fn intersect_many_at(&self, rays: &[Ray], times: &[f32], mask: u32, hits: &mut [Option<Hit>]) {
+        self.closest_of_many_at(rays, times, mask, hits);
+    }
+
+    fn occluded_many_at(&self, rays: &[Ray], times: &[f32], mask: u32, occluded: &mut [bool]) {
+        self.any_of_many_at(rays, times, mask, occluded);
     }
 
     fn intersect_many(&self, rays: &[Ray], mask: u32, hits: &mut [Option<Hit>]) {

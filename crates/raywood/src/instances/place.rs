@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
+use super::motion::Motion;
 use super::transform::{Inverse, ObjectRay, RAY_ERROR};
 use super::{
     BoundsMargin, Built, Instance, InstanceError, ObjectPoint, Tlas, Traceable, Transform,
@@ -15,7 +16,7 @@ use crate::{
     SurfacePoint, parallel,
 };
 
-/// An instance as rays meet it.
+/// An instance as rays meet it, at time 0.
 #[derive(Debug)]
 pub(super) struct Placement<B> {
     pub(super) inverse: Inverse,
@@ -24,11 +25,14 @@ pub(super) struct Placement<B> {
     pub(super) first: u32,
     pub(super) object: Arc<B>,
     pub(super) transform: Transform,
+    /// How it moves from there, if it does.
+    pub(super) motion: Option<Box<Motion>>,
 }
 
 impl<B> Clone for Placement<B> {
     fn clone(&self) -> Self {
-        Self { object: Arc::clone(&self.object), ..*self }
+        let (object, motion) = (Arc::clone(&self.object), self.motion.clone());
+        Self { object, motion, ..*self }
     }
 }
 
@@ -61,16 +65,23 @@ pub(super) fn place<B: Traceable>(instances: &[Instance<B>]) -> Result<Placed<B>
     // Results would be copied twice until it is known whether all are good: so it is only remembered which is the first that is not.
     let first_bad = AtomicUsize::new(usize::MAX);
     let placements = parallel::map(instances.len(), |number| {
-        let Instance { object, transform, mask, id: _ } = &instances[number];
+        let Instance { object, transform, later, mask, id: _ } = &instances[number];
         let inverse = transform.inverse().unwrap_or_else(|_| {
             first_bad.fetch_min(number, Relaxed);
             Inverse::NONE
         });
+        let motion = later.as_ref().and_then(|later| match Motion::new(transform, later) {
+            Ok(motion) => Some(Box::new(motion)),
+            Err(_) => {
+                first_bad.fetch_min(number, Relaxed);
+                None
+            }
+        });
         let (object, first) = (Arc::clone(object), firsts[number]);
-        Placement { inverse, mask: *mask, first, object, transform: *transform }
+        Placement { inverse, mask: *mask, first, object, transform: *transform, motion }
     });
     let instance = first_bad.into_inner();
-    if let Some(Err(error)) = instances.get(instance).map(|bad| bad.transform.inverse()) {
+    if let Some(Err(error)) = instances.get(instance).map(Instance::check) {
         return Err(InstanceError::BadTransform { instance, error });
     }
 
@@ -99,7 +110,8 @@ impl<B: Traceable> Placed<B> {
     /// With this tree, which cost so much when it was built.
     pub(super) fn under(self, tree: TopTree, built_cost: f64) -> Built<B> {
         let Self { placements, boxes: _, margin, leaves } = self;
-        Built { placements, tree, built_cost, margin, leaves }
+        let moves = placements.iter().any(|place| place.motion.is_some() || place.object.moves());
+        Built { placements, tree, built_cost, margin, leaves, moves }
     }
 }
 
@@ -179,10 +191,17 @@ const REINSERTION_PASSES: usize = 4;
 impl<B: Traceable> Placement<B> {
     /// The box around the instance, empty if there is nothing, and how far beside that rays may hit it.
     fn around(&self) -> (Aabb, BoundsMargin) {
-        let Self { object, transform, inverse, .. } = self;
+        let Self { object, transform, inverse, motion, .. } = self;
         let bounds = object.bounds();
         if bounds.is_empty() {
             return (Aabb::EMPTY, BoundsMargin::NONE);
+        }
+        if let Some(motion) = motion {
+            let inner = object.bounds_margin();
+            let mut share = RAY_ERROR * motion.condition;
+            share += inner.share * motion.stretch * motion.stretch_back * ROUNDED;
+            let length = share * motion.distance + inner.length * motion.stretch * ROUNDED;
+            return (motion.bounds(transform, &bounds), BoundsMargin { share, length });
         }
         // What rounding moves a ray in the object's space, and what a ray there may pass beside the object's box, both as the world sees it.
         let (inner, distance) = (object.bounds_margin(), inverse.distance());

@@ -43,6 +43,8 @@ use crate::{Aabb, AcceptAll, Bvh, Geometry, Hit, HitRules, PreparedRay, Ray};
 ///     }
 /// }
 /// ```
+///
+/// If scenes in which something [moves](super::Instance::later) are among them, the questions at a time are to be handed on as well.
 pub trait Traceable: Send + Sync {
     /// The box around everything; empty if there is nothing.
     fn bounds(&self) -> Aabb;
@@ -107,6 +109,43 @@ pub trait Traceable: Send + Sync {
         for (ray, occluded) in rays.iter().zip(occluded) {
             *occluded = self.occluded_within(ray, mask);
         }
+    }
+
+    /// Whether anything in it moves. By default nothing does, and questions at a time are answered as those without.
+    fn moves(&self) -> bool {
+        false
+    }
+
+    /// As [`intersect_within`](Self::intersect_within), at a time from 0 to 1.
+    #[inline]
+    fn intersect_within_at(&self, ray: &Ray, limit: f32, mask: u32, time: f32) -> Option<Hit> {
+        let _ = time;
+        self.intersect_within(ray, limit, mask)
+    }
+
+    /// As [`occluded_within`](Self::occluded_within), at a time from 0 to 1.
+    #[inline]
+    fn occluded_within_at(&self, ray: &Ray, mask: u32, time: f32) -> bool {
+        let _ = time;
+        self.occluded_within(ray, mask)
+    }
+
+    /// As [`object_point`](Self::object_point), of an answer at a time.
+    fn object_point_at(&self, ray: &Ray, hit: &Hit, time: f32) -> ObjectPoint {
+        let _ = time;
+        self.object_point(ray, hit)
+    }
+
+    /// As [`intersect_many`](Self::intersect_many), each ray at its time.
+    fn intersect_many_at(&self, rays: &[Ray], times: &[f32], mask: u32, hits: &mut [Option<Hit>]) {
+        let _ = times;
+        self.intersect_many(rays, mask, hits);
+    }
+
+    /// As [`occluded_many`](Self::occluded_many), each ray at its time.
+    fn occluded_many_at(&self, rays: &[Ray], times: &[f32], mask: u32, occluded: &mut [bool]) {
+        let _ = times;
+        self.occluded_many(rays, mask, occluded);
     }
 }
 

@@ -5,6 +5,9 @@ use std::fmt;
 use crate::double::{Double3, cross, dot, double, single, sub};
 use crate::{Aabb, Ray, Vec3};
 
+/// The rows of a matrix of three by three.
+pub(super) type Matrix = [Double3; 3];
+
 /// An affine transform of space: a point `p` goes to `A p + t`, where `A` is any matrix of three by three (rotation, scaling, mirroring, shear) and `t` moves.
 ///
 /// As three rows of four numbers, the last of which are `t`.
@@ -22,6 +25,8 @@ pub enum TransformError {
     NotFinite,
     /// It flattens space, or does so when its coefficients change by their last digits: there is no way back.
     Singular,
+    /// On the way from it to a later one, blended linearly, there is one that flattens space, or nearly so: as on turns of half a circle.
+    FlatBetween,
 }
 
 impl fmt::Display for TransformError {
@@ -29,6 +34,9 @@ impl fmt::Display for TransformError {
         f.write_str(match self {
             Self::NotFinite => "has a coefficient that is NaN or infinite",
             Self::Singular => "flattens space, or nearly so: it cannot be inverted",
+            Self::FlatBetween => {
+                "flattens space on the way to the later one, or nearly so: as both are blended linearly, a turn between them must stay well below half a circle"
+            }
         })
     }
 }
@@ -138,7 +146,7 @@ impl Transform {
 
     /// The rows of the matrix.
     #[inline(always)]
-    fn linear(&self) -> [Double3; 3] {
+    pub(super) fn linear(&self) -> Matrix {
         // Neither here nor below `map`, which the compiler does not always inline: scenes in which everything moves ask for thousands of inverses a picture.
         let row = |row: usize| [self.entry(row, 0), self.entry(row, 1), self.entry(row, 2)];
         [row(0), row(1), row(2)]
@@ -164,6 +172,19 @@ impl Transform {
         if !self.rows.as_flattened().iter().all(|number| number.is_finite()) {
             return Err(TransformError::NotFinite);
         }
+        let mut inverse = self.way_back();
+        inverse.condition = self.condition(&inverse);
+        // NaN, too, is no condition.
+        if inverse.condition <= WORST_CONDITION {
+            Ok(inverse)
+        } else {
+            Err(TransformError::Singular)
+        }
+    }
+
+    /// The way back of a transform that is known to have one; its condition is left at zero.
+    #[inline(always)]
+    pub(super) fn way_back(&self) -> Inverse {
         // The cofactors: differences of products that are exact, so each is right but for one rounding. The rows of the adjugate are the cofactors' columns.
         let linear = self.linear();
         let [a, b, c] = linear;
@@ -173,14 +194,7 @@ impl Transform {
         let [a, b, c] = cofactors;
         let columns = [column(a), column(b), column(c)];
         let from = [self.entry(0, 3), self.entry(1, 3), self.entry(2, 3)];
-        let mut inverse = Inverse { columns, from, condition: 0.0 };
-        inverse.condition = self.condition(&inverse);
-        // NaN, too, is no condition.
-        if inverse.condition <= WORST_CONDITION {
-            Ok(inverse)
-        } else {
-            Err(TransformError::Singular)
-        }
+        Inverse { columns, from, condition: 0.0 }
     }
 
     /// How much larger rounding errors may become on the way there and back: the greatest sum of a row of `|A| |A^-1|`. From 1 to 3 for rotations and any scaling

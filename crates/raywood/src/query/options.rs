@@ -62,6 +62,7 @@ pub struct QueryOptions<F = AcceptAll> {
     cull: Option<Face>,
     mask: u32,
     skip: Skip,
+    time: f32,
     filter: F,
 }
 
@@ -77,7 +78,7 @@ impl Default for QueryOptions {
 impl QueryOptions {
     /// Every hit counts, except of primitives whose [mask](Geometry::mask) is zero.
     pub fn new() -> Self {
-        Self { cull: None, mask: u32::MAX, skip: None, filter: AcceptAll }
+        Self { cull: None, mask: u32::MAX, skip: None, time: 0.0, filter: AcceptAll }
     }
 }
 
@@ -104,22 +105,42 @@ impl<F> QueryOptions<F> {
         Self { skip: Some((instance, primitive)), ..self }
     }
 
+    /// At this time, from 0 to 1: a [scene](crate::Tlas) is seen as it is then, whose instances may [move](crate::Instance::later). 0 if nothing is said; what is beyond counts as the nearest,
+    /// NaN as 0. Everything else stands still.
+    ///
+    /// ```
+    /// use raywood::{Bvh, Instance, QueryOptions, Ray, Spheres, Tlas, Transform};
+    /// use std::sync::Arc;
+    ///
+    /// let ball = Arc::new(Bvh::build(Spheres::new(vec![([0.0; 3].into(), 1.0)])?)?);
+    /// let flies = Instance::new(ball, Transform::IDENTITY).moving_to(Transform::translation([10.0, 0.0, 0.0]));
+    /// let scene = Tlas::build(vec![flies])?;
+    ///
+    /// let ray = Ray::new([5.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(scene.intersect(&ray).is_none());
+    /// assert_eq!(scene.intersect_with(&ray, QueryOptions::new().at(0.5)).map(|hit| hit.t), Some(2.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn at(self, time: f32) -> Self {
+        Self { time, ..self }
+    }
+
     /// Only those hits count that the filter accepts, as of leaves drawn on larger triangles. It is asked last, in any order, of no hit twice, and not of all: a
     /// closest-hit query does not ask of what lies behind a hit that counts. Give `&mut filter` to keep it.
     ///
     /// Answers are as certain as the filter: one that always says the same of the same hit makes them independent of order. A panic in it passes through and
     /// leaves everything usable.
     pub fn filter<N: FnMut(&Hit) -> bool>(self, filter: N) -> QueryOptions<N> {
-        let Self { cull, mask, skip, filter: _ } = self;
-        QueryOptions { cull, mask, skip, filter }
+        let Self { cull, mask, skip, time, filter: _ } = self;
+        QueryOptions { cull, mask, skip, time, filter }
     }
 }
 
 impl<F> QueryOptions<F> {
     /// As [`filter`](Self::filter), of hits of [double precision](crate::Bvh64::intersect_with).
     pub fn filter64<N: FnMut(&Hit64) -> bool>(self, filter: N) -> QueryOptions<N> {
-        let Self { cull, mask, skip, filter: _ } = self;
-        QueryOptions { cull, mask, skip, filter }
+        let Self { cull, mask, skip, time, filter: _ } = self;
+        QueryOptions { cull, mask, skip, time, filter }
     }
 
     /// Whether the hit with a primitive, given by the numbers of its instance and its own, counts, but for the filter.
@@ -146,22 +167,25 @@ impl<F> QueryOptions<F> {
 }
 
 /// The part of [`QueryOptions`] that is asked where a hit is found: what [`Traceable`](crate::Traceable)s hand on to each other. The rest of them the scene asks itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HitRules {
     /// Only instances and primitives count whose masks have a bit in common with this one.
     pub mask: u32,
     /// Hits of this side of the surface do not count. It is that of the object, however the object is placed: of a mirrored one, too, the outside is the front.
     pub cull: Option<Face>,
+    /// When the ray looks at what moves: see [`QueryOptions::at`].
+    pub time: f32,
 }
 
 impl HitRules {
-    /// Everything counts that some group sees.
-    pub const ALL: Self = Self { mask: u32::MAX, cull: None };
+    /// Everything counts that some group sees, at time 0.
+    pub const ALL: Self = Self { mask: u32::MAX, cull: None, time: 0.0 };
 
     /// These rules, and a filter, as options of a tree in a scene.
     pub(crate) fn with<F: HitFilter>(self, filter: F) -> QueryOptions<F> {
-        QueryOptions { cull: self.cull, mask: self.mask, skip: None, filter }
+        let Self { mask, cull, time } = self;
+        QueryOptions { cull, mask, skip: None, time, filter }
     }
 }
 
@@ -181,8 +205,8 @@ impl<F: HitFilter> Chooser for HitChooser<F> {
 impl<F: HitFilter> QueryOptions<F> {
     /// The options in their two parts.
     pub(crate) fn parts(self) -> (HitRules, HitChooser<F>) {
-        let Self { cull, mask, skip, filter } = self;
-        (HitRules { mask, cull }, HitChooser { skip, filter })
+        let Self { cull, mask, skip, time, filter } = self;
+        (HitRules { mask, cull, time }, HitChooser { skip, filter })
     }
 
     /// The options at work on a ray.

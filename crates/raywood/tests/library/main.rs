@@ -21,6 +21,7 @@ mod instance_space;
 mod instances;
 mod kd_tree;
 mod matrix;
+mod motion;
 mod moving_instances;
 mod octree;
 mod overlap;
