@@ -1,7 +1,7 @@
 //! What a picture is of and how it is rendered, in names and values: what films in files say, by which pictures are told apart.
 
 use raywood::{SimdLevel, StructureKind};
-use raywood_render::{Goal, PreparedScene, RenderOptions, View};
+use raywood_render::{Goal, PreparedScene, RenderOptions, Shutter, View};
 use raywood_scene::{Light, Scene};
 
 /// Names of settings and their values.
@@ -37,6 +37,7 @@ impl Settings {
             filter,
             seed,
             lens,
+            shutter,
             max_depth,
             cutoff,
             opaque_shadows,
@@ -61,6 +62,10 @@ impl Settings {
         settings.say("--opaque-shadows", if *opaque_shadows { "on" } else { "off" });
         if let Some(lens) = lens {
             settings.say("lens", format!("radius {}, focus {}", lens.radius, lens.focus));
+        }
+        // Left out as long as it is not asked for, so that films from before there was one can go on.
+        if *shutter != Shutter::default() {
+            settings.say("--shutter", format!("{},{}", shutter.open, shutter.close));
         }
         settings
     }
@@ -177,6 +182,14 @@ mod tests {
         assert_eq!(
             one.differences(&lens, "now", Weight::Picture),
             ["lens is not given in it, radius 1, focus 2 now"]
+        );
+        let shutter = Shutter { open: 0.25, close: 0.5 };
+        let options = RenderOptions { max_depth: 10, shutter, ..RenderOptions::default() };
+        let quick = Settings::of_picture(&options, &Goal::default(), false);
+        let usual = Settings::of_picture(&RenderOptions::default(), &Goal::default(), false);
+        assert_eq!(
+            quick.differences(&usual, "in b.film", Weight::Picture),
+            ["--shutter is 0.25,0.5 in it, not given in b.film"]
         );
         assert_eq!(one.clone().with("--depth", "5").value("--depth"), Some("5"));
     }

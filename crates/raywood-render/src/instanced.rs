@@ -1,5 +1,6 @@
 //! Scenes with instances, made ready for rays: a tree over trees.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -122,15 +123,45 @@ pub(crate) struct Instanced<'a> {
 
 /// How surfaces of an instance differ from those of its object.
 pub(crate) struct Placed {
-    pub(crate) to_world: Transform,
-    /// What turns normals, up to their length.
-    pub(crate) normals: Transform,
-    pub(crate) mirrored: bool,
+    /// Its way at time 0.
+    way: Way,
+    /// The transform at time 1, if it moves.
+    later: Option<Transform>,
     pub(crate) material: Option<MaterialId>,
     pub(crate) tint: Rgb,
 }
 
 impl Placed {
+    /// The way of its object into the world at a time.
+    #[inline(always)]
+    pub(crate) fn way(&self, time: f32) -> Cow<'_, Way> {
+        match &self.later {
+            None => Cow::Borrowed(&self.way),
+            Some(later) => Cow::Owned(Way::new(self.way.to_world.blended(later, time))),
+        }
+    }
+
+    /// Whether it moves.
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        self.later.is_some()
+    }
+}
+
+/// The way of an object into the world.
+#[derive(Clone)]
+pub(crate) struct Way {
+    pub(crate) to_world: Transform,
+    /// What turns normals, up to their length.
+    normals: Transform,
+    pub(crate) mirrored: bool,
+}
+
+impl Way {
+    fn new(to_world: Transform) -> Self {
+        Self { to_world, normals: to_world.for_normals(), mirrored: to_world.mirrors() }
+    }
+
     /// What becomes of a normal of any length; zero if it has none.
     #[inline]
     pub(crate) fn normal(&self, normal: Vec3) -> Vec3 {
@@ -167,14 +198,13 @@ impl<'a> Instanced<'a> {
         let mut instances = vec![Instance::new(world, Transform::IDENTITY)];
         instances.extend(scene.instances.placed().iter().map(|placed| {
             let object = Arc::clone(&objects[placed.object as usize]);
-            Instance::new(object, placed.transform)
+            Instance { later: placed.later, ..Instance::new(object, placed.transform) }
         }));
         instances.push(Instance::new(spheres, Transform::IDENTITY));
         let tree = Tlas::build_with(instances, options)?;
         let placed = scene.instances.placed().iter().map(|placed| Placed {
-            to_world: placed.transform,
-            normals: placed.transform.for_normals(),
-            mirrored: placed.transform.mirrors(),
+            way: Way::new(placed.transform),
+            later: placed.later,
             material: placed.material,
             tint: placed.tint,
         });

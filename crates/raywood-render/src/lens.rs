@@ -39,7 +39,7 @@ impl Lens {
 }
 
 /// How far in front of the eye, along the line of sight, that is which is seen at a point of a picture of this size, in pixels from the upper left corner; `None` where
-/// nothing is seen.
+/// nothing is seen. Of what moves, as it is at time 0.
 ///
 /// # Errors
 ///

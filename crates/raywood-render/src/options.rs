@@ -9,6 +9,7 @@ use crate::integrators::{INTEGRATORS, Integrator};
 use crate::lens::Lens;
 use crate::part::{Part, Region};
 use crate::pixel_filter::PixelFilter;
+use crate::shutter::Shutter;
 use crate::tiles::TILE_SIZE;
 
 /// What a rendering is asked for.
@@ -26,6 +27,8 @@ pub struct RenderOptions {
     pub seed: u32,
     /// The lens in front of the eye, else a pinhole.
     pub lens: Option<Lens>,
+    /// When light comes in, of scenes in which something moves.
+    pub shutter: Shutter,
     /// How often light may be mirrored or let through on its way to the eye: 0 shows neither. What lies beyond is black.
     pub max_depth: u32,
     /// Rays that would count less than this in a pixel, in units of white, are not traced. A step of an 8-bit sRGB
@@ -47,6 +50,7 @@ impl Default for RenderOptions {
             filter: PixelFilter::default(),
             seed: 0,
             lens: None,
+            shutter: Shutter::default(),
             max_depth: 10,
             cutoff: 1.0 / 1024.0,
             opaque_shadows: false,
@@ -98,6 +102,9 @@ impl RenderOptions {
         if let Some(lens) = self.lens.filter(|lens| !lens.is_sound()) {
             return Err(RenderError::Lens(lens));
         }
+        if !self.shutter.is_sound() {
+            return Err(RenderError::Shutter(self.shutter));
+        }
         Ok(())
     }
 }
@@ -146,6 +153,8 @@ pub enum RenderError {
     },
     /// No light passes, or nothing in front of the eye is in focus.
     Lens(Lens),
+    /// It does not open and then close within the time from 0 to 1.
+    Shutter(Shutter),
     /// The structure has no such level to show.
     NoSuchLevel {
         /// The kind of structure.
@@ -208,6 +217,10 @@ impl fmt::Display for RenderError {
             Self::Lens(Lens { radius, focus }) => write!(
                 f,
                 "a lens of radius {radius} in focus at {focus}: both must be finite, the focus above 0"
+            ),
+            Self::Shutter(Shutter { open, close }) => write!(
+                f,
+                "a shutter that opens at {open} and closes at {close}: both must be from 0 to 1, and it must not close before it opens"
             ),
             Self::NoSuchLevel { structure, level, levels } => {
                 let name = structure.name();

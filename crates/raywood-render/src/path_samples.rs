@@ -16,6 +16,9 @@ impl PathSamples {
     /// Where on the lens a path begins. No path meets as many surfaces that they had this number.
     pub(crate) const LENS: u32 = u32::MAX;
 
+    /// When it begins. Nor this one.
+    pub(crate) const SHUTTER: u32 = u32::MAX - 1;
+
     /// Path `index` of the pixel in column `x` and row `y`, for seed 0.
     #[cfg(test)]
     pub(crate) fn new(place: [u32; 2], index: u32) -> Self {

@@ -190,6 +190,12 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
+    /// Whether any of its instances moves. If none does, times do not matter.
+    #[inline(always)]
+    pub(crate) fn moves(&self) -> bool {
+        self.tracer.moves()
+    }
+
     /// Whether it has instances.
     #[inline(always)]
     pub(crate) fn has_instances(&self) -> bool {
@@ -253,13 +259,16 @@ impl<'a> PreparedScene<'a> {
         own.chain(balls).chain(placed)
     }
 
-    /// The corners of a triangle, in the world.
+    /// The corners of a triangle at a time, in the world.
     #[inline]
-    pub(crate) fn corners(&self, triangle: u32, instance: u32) -> [Vec3; 3] {
+    pub(crate) fn corners(&self, triangle: u32, instance: u32, time: f32) -> [Vec3; 3] {
         let corners = self.scene.mesh.triangles.corners(triangle);
         match self.placed(instance) {
             None => corners,
-            Some(placed) => corners.map(|corner| placed.to_world.point(corner)),
+            Some(placed) => {
+                let way = placed.way(time);
+                corners.map(|corner| way.to_world.point(corner))
+            }
         }
     }
 
@@ -351,7 +360,7 @@ impl<'a> PreparedScene<'a> {
                 Some(_) => Aabb::EMPTY,
             };
             if !bounds.is_empty() {
-                boxes.push(placed.transform.bounds(&bounds));
+                boxes.push(placed.bounds(&bounds));
             }
         }
         boxes

@@ -76,7 +76,7 @@ pub(crate) struct Passage {
 /// through.
 pub(crate) fn passage(
     prepared: &PreparedScene<'_>,
-    ray: &Ray,
+    (ray, time): (&Ray, f32),
     hit: &Hit,
     opaque: bool,
 ) -> Option<Passage> {
@@ -86,7 +86,7 @@ pub(crate) fn passage(
     if !transmissive && opacity >= 1.0 {
         return None;
     }
-    let surface = prepared.tracer().surface_point(ray, hit);
+    let surface = prepared.tracer().surface_point(ray, hit, time);
     let length = ray.direction.length();
     let cosine = ray.direction.dot(surface.normal) / length;
     let share = if transmissive { filter(material, cosine, hit.t * length) } else { Rgb::ZERO };

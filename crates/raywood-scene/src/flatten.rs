@@ -36,7 +36,7 @@ impl Scene {
     }
 
     /// Copies the objects to all places where they stand, so that the mesh holds all that is to be seen and there are no instances. Triangles of mirrored instances have their corners in
-    /// the other order, so that they face the same way. Instances with a [tint](Instance::tint) get it as colours of vertices.
+    /// the other order, so that they face the same way. What moves is copied where it is at time 0. Instances with a [tint](Instance::tint) get it as colours of vertices.
     ///
     /// # Errors
     ///
@@ -56,7 +56,7 @@ impl Scene {
         let own = instances.own_triangles(&mesh.triangles);
         all.add(mesh, 0..own, (&Transform::IDENTITY, Rgb::ONE), |own| own);
         let objects: Vec<_> = instances.objects().collect();
-        for Instance { object, transform, material, tint } in instances.placed() {
+        for Instance { object, transform, later: _, material, tint } in instances.placed() {
             let triangles = objects[*object as usize].clone();
             all.add(mesh, triangles, (transform, *tint), |own| material.or(own));
         }

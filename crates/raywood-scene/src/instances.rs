@@ -23,8 +23,10 @@ pub struct Instances {
 pub struct Instance {
     /// The number of the object.
     pub object: u32,
-    /// From the object's space into the world: any affine transform that has an inverse.
+    /// From the object's space into the world: any affine transform that has an inverse. Of what moves, at time 0.
     pub transform: Transform,
+    /// Where it has moved to at time 1, if it moves: [between](Transform::blended), its points are on straight lines.
+    pub later: Option<Transform>,
     /// A material for all its triangles, in place of their own.
     pub material: Option<MaterialId>,
     /// What its diffuse colours are multiplied by, as by colours of vertices.
@@ -34,7 +36,21 @@ pub struct Instance {
 impl Instance {
     /// An object at a place, with its own materials and colours.
     pub fn new(object: u32, transform: Transform) -> Self {
-        Self { object, transform, material: None, tint: Rgb::ONE }
+        Self { object, transform, later: None, material: None, tint: Rgb::ONE }
+    }
+
+    /// The box around it at all times, if that is the one around its object.
+    pub fn bounds(&self, object: &Aabb) -> Aabb {
+        let first = self.transform.bounds(object);
+        // On the way all corners of the box are between where they are at both ends.
+        self.later.map_or(first, |later| first.union(later.bounds(object)))
+    }
+
+    fn check(&self) -> Result<(), TransformError> {
+        match &self.later {
+            None => self.transform.check(),
+            Some(later) => self.transform.check_motion(later),
+        }
     }
 }
 
@@ -47,7 +63,7 @@ pub enum InstancesError {
         /// The first such object.
         object: usize,
     },
-    /// A transform is not finite or has no inverse.
+    /// A transform is not finite or has no inverse, or one on the way between two.
     BadTransform {
         /// The first such instance.
         instance: usize,
@@ -104,7 +120,7 @@ impl Instances {
             let object = placed[instance].object;
             return Err(InstancesError::NoSuchObject { instance, object, objects });
         }
-        let bad = placed.iter().map(|instance| instance.transform.check());
+        let bad = placed.iter().map(Instance::check);
         if let Some((instance, Err(error))) = bad.enumerate().find(|(_, check)| check.is_err()) {
             return Err(InstancesError::BadTransform { instance, error });
         }
@@ -119,6 +135,11 @@ impl Instances {
     /// All instances.
     pub fn placed(&self) -> &[Instance] {
         &self.placed
+    }
+
+    /// Whether any of them moves.
+    pub fn moves(&self) -> bool {
+        self.placed.iter().any(|instance| instance.later.is_some())
     }
 
     /// The triangles of all objects, in order.
@@ -143,11 +164,10 @@ impl Instances {
         self.objects().map(|range| MeshPart::new(triangles, range).total_bounds()).collect()
     }
 
-    /// A box around each instance: that of its object, transformed; empty where that is. O(triangles of objects + instances).
+    /// A box around each instance, at all times: that of its object, transformed; empty where that is. O(triangles of objects + instances).
     pub fn bounds(&self, triangles: &TriangleMesh) -> Vec<Aabb> {
         let objects = self.object_bounds(triangles);
-        let around =
-            |instance: &Instance| instance.transform.bounds(&objects[instance.object as usize]);
+        let around = |instance: &Instance| instance.bounds(&objects[instance.object as usize]);
         self.placed.iter().map(around).collect()
     }
 }

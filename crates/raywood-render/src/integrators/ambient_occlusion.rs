@@ -41,6 +41,8 @@ impl Occlusion {
 #[derive(Default)]
 struct Around {
     rays: Vec<Ray>,
+    /// When they look, if anything moves.
+    times: Vec<f32>,
     blocked: Vec<bool>,
 }
 
@@ -59,11 +61,15 @@ impl Shown for Occlusion {
         samples: &dyn Fn(usize) -> PathSamples,
         colors: &mut [Rgb],
     ) -> RayCounts {
-        AROUND.with_borrow_mut(|Around { rays, blocked }| {
+        AROUND.with_borrow_mut(|Around { rays, times, blocked }| {
             rays.clear();
+            times.clear();
             for number in 0..colors.len() {
                 let normal = get(&surfaces.normals, number);
                 let geometric = get(&surfaces.geometric_normals, number);
+                if frame.scene.moves() {
+                    times.extend([surfaces.time(number); RAYS as usize]);
+                }
                 let (s, t) = normal.orthonormal_basis();
                 for ray in 0..RAYS {
                     let [x, y, z] = cosine_hemisphere(samples(number).pair(ray)).to_array();
@@ -76,7 +82,7 @@ impl Shown for Occlusion {
             }
             blocked.clear();
             blocked.resize(rays.len(), false);
-            frame.scene.tracer().occluded_batch(rays, blocked);
+            frame.scene.tracer().occluded_batch(rays, times, blocked);
             let is_open = |(blocked, ray): &(&bool, &Ray)| !**blocked && ray.t_max > 0.0;
             let rays_of = rays.chunks_exact(RAYS as usize);
             let answers = blocked.chunks_exact(RAYS as usize).zip(rays_of);

@@ -68,7 +68,7 @@ pub fn features(
 /// The numbers of a primitive, its material and its instance where nothing is seen.
 pub const NO_ID: u32 = u32::MAX;
 
-/// Which primitive, material and instance the middle of each pixel sees (0 in scenes without instances), row after row from the top; [`NO_ID`] where nothing is. Through holes, and without any lens.
+/// Which primitive, material and instance the middle of each pixel sees (0 in scenes without instances), row after row from the top; [`NO_ID`] where nothing is. Through holes, without any lens, and in the middle of the time that the shutter is open.
 ///
 /// # Errors
 ///
@@ -82,13 +82,14 @@ pub fn ids(
     options.validate()?;
     let lights = Lights::default();
     let frame = Frame::new(scene, &lights, camera, options, progress)?;
+    let time = options.shutter.middle();
     let (size, bytes) = ((options.width, options.height), options.memory_bytes());
     let (ids, _) = fill_tiles(size, [NO_ID; 3], bytes, progress, |tile, pixels| {
         for row in 0..tile.height {
             for column in 0..tile.width {
                 let [x, y] = [tile.x + column, tile.y + row].map(|x| x as f32 + 0.5);
                 let ray = frame.camera.ray(x, y);
-                pixels[(row * TILE_SIZE + column) as usize] = id(scene, ray);
+                pixels[(row * TILE_SIZE + column) as usize] = id(scene, ray, time);
             }
         }
         let primary = u64::from(tile.width * tile.height);
@@ -97,17 +98,17 @@ pub fn ids(
     Ok(ids)
 }
 
-/// What a ray meets first that is there by half at least.
-fn id(scene: &PreparedScene<'_>, mut ray: Ray) -> [u32; 3] {
+/// What a ray meets first at a time that is there by half at least.
+fn id(scene: &PreparedScene<'_>, mut ray: Ray, time: f32) -> [u32; 3] {
     for hole in 0..=MOST_HOLES {
-        let Some(hit) = scene.tracer().intersect(&ray) else { return [NO_ID; 3] };
+        let Some(hit) = scene.tracer().intersect_at(&ray, time) else { return [NO_ID; 3] };
         let is_there = hole == MOST_HOLES
             || !scene.material_of(&hit).perforated
             || opacity_at(scene, &hit) >= 0.5;
         if is_there {
             return [hit.primitive, scene.material_index(&hit) as u32, hit.instance];
         }
-        ray = scene.tracer().surface_point(&ray, &hit).spawn(ray.direction);
+        ray = scene.tracer().surface_point(&ray, &hit, time).spawn(ray.direction);
     }
     [NO_ID; 3]
 }

@@ -74,18 +74,24 @@ struct Scratch {
 /// Rays that go on through holes.
 type Behind = RayQueue<Seen>;
 
-/// In which pixel of the tile a ray is seen, by which share, and how long its way was before.
+/// In which pixel of the tile a ray is seen, by which share, how long its way was before, and when.
 #[derive(Clone, Copy)]
 struct Seen {
     pixel: u16,
     share: f32,
     travelled: f32,
+    time: f32,
 }
 
 impl Travelled for Seen {
     #[inline(always)]
     fn travelled(&self) -> f32 {
         self.travelled
+    }
+
+    #[inline(always)]
+    fn time(&self) -> f32 {
+        self.time
     }
 }
 
@@ -123,7 +129,6 @@ impl<S: Shown> FirstHits<'_, S> {
                 counts.primary += primary.len() as u64;
 
                 let (primary, hits) = (&scratch.primary, &scratch.primary_hits);
-                let seen = |ray| Seen { pixel: primary.pixel(ray), share: 1.0, travelled: 0.0 };
                 let samples = |pixel| samples_of(tile, pixel, index, options.seed);
                 let memory = Memory {
                     surfaces: &mut scratch.surfaces,
@@ -132,6 +137,10 @@ impl<S: Shown> FirstHits<'_, S> {
                     behind: &mut scratch.behind,
                 };
                 let wave = TracedPrimary { eye, primary, hits };
+                let seen = |ray| {
+                    let (pixel, time) = (primary.pixel(ray), wave.time(ray));
+                    Seen { pixel, share: 1.0, travelled: 0.0, time }
+                };
                 counts += self.show(&wave, level, (seen, samples), memory, pixels);
                 counts += self.look_through_holes(tile, index, level, scratch, pixels);
                 if progress.is_cancelled() {
@@ -159,8 +168,7 @@ impl<S: Shown> FirstHits<'_, S> {
             if wave.len() == 0 {
                 break;
             }
-            hits.resize(wave.len(), None);
-            self.frame.scene.tracer().intersect_batch(&wave.rays, hits);
+            wave.trace(self.frame.scene, hits);
             counts.refraction += wave.len() as u64;
             let wave = wave.traced(hits, 0..wave.len());
             let memory = Memory { surfaces, textures, colors, behind };

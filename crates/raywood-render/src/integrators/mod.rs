@@ -20,6 +20,7 @@ use crate::PreparedScene;
 use crate::camera_rays::{CameraError, CameraRays};
 use crate::lights::Lights;
 use crate::options::RenderOptions;
+use crate::path_samples::PathSamples;
 use crate::progress::Progress;
 use crate::stats::RayCounts;
 use crate::tiles::{Tile, TilePass, TilePixels};
@@ -120,6 +121,15 @@ impl<'a> Frame<'a> {
             CameraRays::new(camera, options.width, options.height)?.with_lens(options.lens);
         let footprint_samples = options.samples;
         Ok(Self { scene, lights, camera, options, progress, footprint_samples })
+    }
+
+    /// When ray `index` of a pixel looks at the scene, if anything moves there.
+    #[inline]
+    pub(crate) fn time(&self, place: [u32; 2], index: u32) -> f32 {
+        match self.scene.moves() {
+            true => self.options.shutter.time(PathSamples::seeded(place, index, self.options.seed)),
+            false => 0.0,
+        }
     }
 
     /// By how much the cone that a primary ray stands for widens on a way of length 1: one of several rays of a pixel stands for a part of it.

@@ -13,7 +13,7 @@ pub(super) struct ViewDepths {
 }
 
 impl ViewDepths {
-    /// Looks through the middles of so many columns and rows. Of a view of nothing all is one.
+    /// Looks through the middles of so many columns and rows. Of a view of nothing all is one. What moves is where it is at time 0.
     pub(super) fn of(frame: &Frame<'_>) -> Self {
         const COLUMNS: u32 = 64;
         let Frame { scene, camera, options, .. } = frame;

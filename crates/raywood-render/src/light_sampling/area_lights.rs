@@ -10,6 +10,7 @@ use raywood_scene::luminance;
 use super::cone::Cone;
 use super::{AliasTable, LightSample};
 use crate::PreparedScene;
+use crate::instanced::Placed;
 use crate::prepared::{Element, Which};
 use crate::textured::emission_at;
 
@@ -25,6 +26,8 @@ pub(crate) struct AreaLights {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lit {
     pub(crate) element: Element,
+    /// When it is seen, if anything moves.
+    pub(crate) time: f32,
     /// How far away it is.
     pub(crate) distance: f32,
     /// The cosine between the way and the surface's normal, at least zero.
@@ -55,11 +58,11 @@ impl AreaLights {
         Some(Self { elements, table, densities })
     }
 
-    /// Chooses a point that light comes from to `point`; `None` where it chose one that sends none there. `choice` and `u` are random numbers.
+    /// Chooses a point that light comes from to `point` at a time; `None` where it chose one that sends none there. `choice` and `u` are random numbers.
     pub(crate) fn sample(
         &self,
         scene: &PreparedScene<'_>,
-        point: Vec3,
+        (point, time): (Vec3, f32),
         choice: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
@@ -69,9 +72,10 @@ impl AreaLights {
         match scene.which(primitive) {
             Which::Triangle(triangle) => {
                 let [u, v] = even_barycentrics(u);
-                let [p0, p1, p2] = scene.corners(triangle, instance);
+                let [p0, p1, p2] = scene.corners(triangle, instance, time);
                 let target = (1.0 - u - v) * p0 + u * p1 + v * p2;
                 let normal = (p1 - p0).cross(p2 - p0).normalize_or_zero();
+                let per_area = per_area * shrunk(scene, triangle, instance, time);
                 let way = target - point;
                 let distance = way.length();
                 let direction = way / distance;
@@ -101,10 +105,13 @@ impl AreaLights {
 
     /// The density by solid angle with which [`sample`](Self::sample) chooses a point, as it is seen from another.
     pub(crate) fn density(&self, scene: &PreparedScene<'_>, lit: Lit) -> f32 {
-        let Lit { element, distance, cosine } = lit;
+        let Lit { element, time, distance, cosine } = lit;
         let per_area = self.densities[scene.material_index(element)];
         match scene.which(element.primitive) {
-            Which::Triangle(_) if cosine > 0.0 => per_area * distance * distance / cosine,
+            Which::Triangle(triangle) if cosine > 0.0 => {
+                let per_area = per_area * shrunk(scene, triangle, element.instance, time);
+                per_area * distance * distance / cosine
+            }
             Which::Triangle(_) => 0.0,
             Which::Sphere(sphere) => {
                 let (_, radius) = scene.scene().spheres.as_slice()[sphere as usize];
@@ -123,11 +130,24 @@ fn even_barycentrics([u, v]: [f32; 2]) -> [f32; 2] {
     if v > u { [0.5 * u, v - 0.5 * u] } else { [u - 0.5 * v, 0.5 * v] }
 }
 
-/// The area of an element.
+/// How much larger a triangle was at time 0, when it was weighed: 1 where nothing moves.
+#[inline]
+fn shrunk(scene: &PreparedScene<'_>, triangle: u32, instance: u32, time: f32) -> f32 {
+    if !scene.placed(instance).is_some_and(Placed::moves) {
+        return 1.0;
+    }
+    let [first, now] = [0.0, time].map(|time| {
+        let [p0, p1, p2] = scene.corners(triangle, instance, time);
+        (p1 - p0).cross(p2 - p0).length()
+    });
+    first / now
+}
+
+/// The area of an element, at time 0.
 fn area(scene: &PreparedScene<'_>, element: Element) -> f64 {
     match scene.which(element.primitive) {
         Which::Triangle(triangle) => {
-            let [p0, p1, p2] = scene.corners(triangle, element.instance);
+            let [p0, p1, p2] = scene.corners(triangle, element.instance, 0.0);
             0.5 * f64::from((p1 - p0).cross(p2 - p0).length())
         }
         Which::Sphere(sphere) => {

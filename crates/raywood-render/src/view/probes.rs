@@ -32,7 +32,7 @@ impl Surroundings {
                 Some(hit) => {
                     hits += 1;
                     logarithms += hit.t.max(f32::MIN_POSITIVE).ln();
-                    let normal = prepared.tracer().surface_point(&ray, &hit).normal;
+                    let normal = prepared.tracer().surface_point(&ray, &hit, 0.0).normal;
                     fronts += u32::from(normal.dot(ray.direction) < 0.0);
                 }
             }

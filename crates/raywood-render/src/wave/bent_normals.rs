@@ -120,8 +120,9 @@ fn gather_tangents(
         let mut tangent = Vec3::new(along(0), along(1), along(2));
         let mut sign = a[3];
         if let Some(placed) = scene.placed(surfaces.element(number).instance) {
-            tangent = placed.to_world.vector(tangent);
-            sign = if placed.mirrored { -sign } else { sign };
+            let way = placed.way(surfaces.time(number));
+            tangent = way.to_world.vector(tangent);
+            sign = if way.mirrored { -sign } else { sign };
         }
         set(given, place, tangent);
         signs[place] = if tangent == Vec3::ZERO { 0.0 } else { sign };

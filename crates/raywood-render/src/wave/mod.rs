@@ -28,6 +28,8 @@ pub(crate) trait Traced {
     fn direction(&self, ray: usize) -> Vec3;
     /// How long the way from the eye to where it started was.
     fn travelled(&self, ray: usize) -> f32;
+    /// When it did so, in scenes in which something moves.
+    fn time(&self, ray: usize) -> f32;
     /// What it hit.
     fn hit(&self, ray: usize) -> Option<Hit>;
 }

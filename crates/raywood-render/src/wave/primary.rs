@@ -19,6 +19,8 @@ pub(crate) struct PrimaryRays {
     pub(crate) directions: Vec<Vec3>,
     /// Where it starts, if not at the eye; memory for the rays and what they hit.
     origins: Vec<Vec3>,
+    /// When each looks at the scene, if anything moves there.
+    times: Vec<f32>,
     rays: Vec<Ray>,
     found: Vec<Option<Hit>>,
 }
@@ -37,6 +39,7 @@ impl PrimaryRays {
     pub(crate) fn reset(&mut self, tile: &Tile, square: [u32; 2], options: &RenderOptions) {
         self.pixels.clear();
         self.origins.clear();
+        self.times.clear();
         let &RenderOptions { samples, filter, seed, .. } = options;
         // Not `extend`, which would step through the nested ranges from outside, pixel by pixel.
         tile.pixels_in_blocks(square).for_each(|(number, place)| {
@@ -56,34 +59,39 @@ impl PrimaryRays {
         let Frame { scene, camera, .. } = frame;
         level.run(SendPrimary { camera, primary: self, index });
         match camera.lens() {
-            None => {
+            None if !scene.moves() => {
                 scene.tracer().intersect_from(camera.eye(), &self.directions, hits);
             }
-            Some(lens) => self.trace_through_lens(frame, lens, index, hits),
+            lens => self.trace_one_by_one(frame, lens, index, hits),
         }
     }
 
-    /// Has the rays pass through points of the lens, each its own, and finds what they hit.
-    fn trace_through_lens(
+    /// Has the rays pass through points of the lens, if there is one, and look at times, each its own, and finds what they hit.
+    fn trace_one_by_one(
         &mut self,
         frame: &Frame<'_>,
-        lens: &Lens,
+        lens: Option<&Lens>,
         index: u32,
         hits: &mut HitColumns,
     ) {
-        let Self { pixels, directions, origins, rays, found } = self;
+        let Self { pixels, directions, origins, times, rays, found } = self;
         let Frame { scene, camera, options, .. } = frame;
         rays.clear();
         rays.extend(pixels.iter().zip(&*directions).map(|(pixel, &direction)| {
+            let Some(lens) = lens else { return camera.ray_along(direction) };
             let path = PathSamples::seeded(pixel.place, index, options.seed);
             camera.through_lens(lens, direction, path)
         }));
+        times.clear();
+        if scene.moves() {
+            times.extend(pixels.iter().map(|pixel| frame.time(pixel.place, index)));
+        }
         origins.clear();
         origins.extend(rays.iter().map(|ray| ray.origin));
         directions.clear();
         directions.extend(rays.iter().map(|ray| ray.direction));
         found.resize(rays.len(), None);
-        scene.tracer().intersect_batch(rays, found);
+        scene.tracer().intersect_batch(rays, times, found);
         *hits = HitColumns::new(rays.len());
         for (number, hit) in found.iter().enumerate() {
             let Some(hit) = hit else { continue };
@@ -189,6 +197,11 @@ impl Traced for TracedPrimary<'_> {
     #[inline(always)]
     fn travelled(&self, _ray: usize) -> f32 {
         0.0
+    }
+
+    #[inline(always)]
+    fn time(&self, ray: usize) -> f32 {
+        self.primary.times.get(ray).copied().unwrap_or(0.0)
     }
 
     #[inline(always)]

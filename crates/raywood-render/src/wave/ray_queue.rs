@@ -5,22 +5,27 @@ use std::ops::Range;
 use raywood::{Hit, Ray, Vec3};
 
 use super::{TRACED, Traced};
+use crate::PreparedScene;
 
 /// What is known of a ray that waits.
 pub(crate) trait Travelled {
     /// How long the way from the eye to where the ray starts was.
     fn travelled(&self) -> f32;
+    /// When the ray looks at the scene, if anything moves there.
+    fn time(&self) -> f32;
 }
 
 /// Rays, and what is known of them, number by number.
 pub(crate) struct RayQueue<T> {
-    pub(crate) rays: Vec<Ray>,
+    rays: Vec<Ray>,
     known: Vec<T>,
+    /// Memory for times.
+    times: Vec<f32>,
 }
 
 impl<T> Default for RayQueue<T> {
     fn default() -> Self {
-        Self { rays: Vec::new(), known: Vec::new() }
+        Self { rays: Vec::new(), known: Vec::new(), times: Vec::new() }
     }
 }
 
@@ -46,6 +51,20 @@ impl<T> RayQueue<T> {
         wave.clear();
         wave.rays.extend(self.rays.drain(start..));
         wave.known.extend(self.known.drain(start..));
+    }
+
+    /// Finds what all rays hit, which takes the place of what is in `hits`.
+    pub(crate) fn trace(&mut self, scene: &PreparedScene<'_>, hits: &mut Vec<Option<Hit>>)
+    where
+        T: Travelled,
+    {
+        let Self { rays, known, times } = self;
+        times.clear();
+        if scene.moves() {
+            times.extend(known.iter().map(T::time));
+        }
+        hits.resize(rays.len(), None);
+        scene.tracer().intersect_batch(rays, times, hits);
     }
 
     /// Some of the rays, when they were traced; `hits` are those of all.
@@ -93,6 +112,11 @@ impl<T: Travelled> Traced for TracedRays<'_, T> {
     #[inline(always)]
     fn travelled(&self, ray: usize) -> f32 {
         self.known[ray].travelled()
+    }
+
+    #[inline(always)]
+    fn time(&self, ray: usize) -> f32 {
+        self.known[ray].time()
     }
 
     #[inline(always)]

@@ -20,6 +20,8 @@ pub(crate) struct Surfaces {
     primitives: [u32; WAVE],
     /// The number of the instance.
     instances: [u32; WAVE],
+    /// When the rays looked; only of scenes in which something moves.
+    times: Column,
     /// The number of the material in its scene.
     pub(crate) materials: [u32; WAVE],
     /// Where along the ray, and where on the triangle.
@@ -56,6 +58,7 @@ impl Default for Surfaces {
             rays: [0; WAVE],
             primitives: [0; WAVE],
             instances: [0; WAVE],
+            times: [0.0; WAVE],
             materials: [0; WAVE],
             distances: [0.0; WAVE],
             weights: [[0.0; WAVE]; 2],
@@ -99,6 +102,12 @@ impl Surfaces {
     #[inline(always)]
     pub(crate) fn element(&self, number: usize) -> Element {
         Element { primitive: self.primitives[number], instance: self.instances[number] }
+    }
+
+    /// When the ray looked that hit a surface; of no meaning in scenes in which nothing moves.
+    #[inline(always)]
+    pub(crate) fn time(&self, number: usize) -> f32 {
+        self.times[number]
     }
 
     /// How far along its ray a surface is.
@@ -283,6 +292,11 @@ impl Surfaces {
         if !mesh.normals.is_empty() {
             gather_vertices(&mesh.normals, &corners, count, &mut self.corner_normals);
         }
+        if scene.moves() {
+            for number in 0..count {
+                self.times[number] = wave.time(self.ray(number));
+            }
+        }
         if scene.has_instances() {
             self.place(scene);
         }
@@ -293,12 +307,13 @@ impl Surfaces {
         let has_normals = !scene.scene().mesh.normals.is_empty();
         for number in 0..self.count() {
             let Some(placed) = scene.placed(self.instances[number]) else { continue };
+            let way = placed.way(self.time(number));
             for corner in 0..3 {
                 let position = get(&self.corners[corner], number);
-                set(&mut self.corners[corner], number, placed.to_world.point(position));
+                set(&mut self.corners[corner], number, way.to_world.point(position));
                 if has_normals {
                     let normal = get(&self.corner_normals[corner], number);
-                    set(&mut self.corner_normals[corner], number, placed.normal(normal));
+                    set(&mut self.corner_normals[corner], number, way.normal(normal));
                 }
             }
         }
@@ -313,7 +328,7 @@ impl Surfaces {
             let ray = self.ray(number);
             let Some(hit) = wave.hit(ray) else { continue };
             let ray = Ray::new(wave.origin(ray), wave.direction(ray));
-            let point = scene.tracer().surface_point(&ray, &hit);
+            let point = scene.tracer().surface_point(&ray, &hit, self.time(number));
             set(&mut self.positions, number, point.position);
             set(&mut self.own_normals, number, point.normal);
             self.clearances[number] = point.clearance;

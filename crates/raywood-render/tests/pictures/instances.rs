@@ -11,7 +11,7 @@ use raywood_scene::{
 use raywood_testkit::shapes;
 
 /// A floor and a sphere in the world, and one bent sheet at places of every kind: turned, stretched, mirrored, sheared; glass, shining, and tinted ones.
-fn scene() -> Scene {
+pub(crate) fn scene() -> Scene {
     let ball = shapes::uv_sphere(12, Vec3::ZERO, 1.0);
     let floor = [[-8.0, -1.2, -8.0], [-8.0, -1.2, 8.0], [8.0, -1.2, 8.0], [8.0, -1.2, -8.0]];
     let mut positions: Vec<Vec3> = floor.map(Vec3::from).to_vec();

@@ -8,6 +8,7 @@ mod heat_map;
 mod image_files;
 mod instances;
 mod mitsuba;
+mod motion;
 mod optics;
 mod path;
 mod references;

@@ -131,9 +131,14 @@ fn add_instances(sum: &mut Checksum, instances: &Instances) {
     for triangles in instances.objects() {
         sum.add(&[triangles.start, triangles.end]);
     }
-    for Instance { object, transform, material, tint } in instances.placed() {
+    for Instance { object, transform, later, material, tint } in instances.placed() {
         sum.add(object);
         transform.rows().iter().for_each(|row| sum.add(row));
+        // Of what stands still as it was before anything moved, so that films of such scenes can go on.
+        if let Some(later) = later {
+            sum.add(&1u32);
+            later.rows().iter().for_each(|row| sum.add(row));
+        }
         sum.add(material);
         sum.add(tint);
     }
@@ -179,6 +184,10 @@ mod tests {
         assert_eq!(changed(|scene| scene.background = background), ["surroundings"]);
         let moved = Instance::new(0, Transform::translation([1.0, 0.0, 0.0]));
         let instances = Instances::new(vec![0], 1, vec![moved]).expect("instances");
+        assert_eq!(changed(|scene| scene.instances = instances), ["instances"]);
+        let moved = Transform::translation([1.0, 0.0, 0.0]);
+        let moving = Instance { later: Some(moved), ..Instance::new(0, Transform::IDENTITY) };
+        let instances = Instances::new(vec![0], 1, vec![moving]).expect("instances");
         assert_eq!(changed(|scene| scene.instances = instances), ["instances"]);
         let corners = vec![[0.0; 3], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let triangles = TriangleMesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");

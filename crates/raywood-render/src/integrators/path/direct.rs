@@ -147,7 +147,8 @@ impl AskLights<'_> {
             let u = [asked.u[0][number], asked.u[1][number]];
             let point = get(&surfaces.positions, number);
             let choice = asked.choices[0][number];
-            let sample = area.sample(picture.frame.scene, point, choice, u);
+            let time = surfaces.time(number);
+            let sample = area.sample(picture.frame.scene, (point, time), choice, u);
             let Some(LightSample { direction, target, radiance, density }) = sample else {
                 continue;
             };
@@ -233,9 +234,9 @@ impl AskLights<'_> {
         for &number in &lit[..lit_count] {
             let number = usize::from(number);
             let origin = surfaces.point(number).origin_towards(get(&asked.directions, number));
-            let (aim, pixel) = (aim(asked, number), vertices.walks[number].pixel);
+            let aim = aim(asked, number);
             let light = get(&asked.light, number);
-            shadows.push(aim.ray_from(origin), aim, extent, pixel, light);
+            shadows.push(aim.ray_from(origin), aim, extent, &vertices.walks[number], light);
         }
     }
 }

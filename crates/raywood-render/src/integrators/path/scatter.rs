@@ -89,7 +89,8 @@ impl<W: Walked> Arrive<'_, '_, W> {
         if material.emission != Rgb::ZERO {
             let direction = get(&surfaces.directions, number);
             let cosine = -direction.dot(get(&surfaces.geometric_normals, number));
-            let lit = Lit { element: surfaces.element(number), distance: since, cosine };
+            let (element, time) = (surfaces.element(number), walk.time);
+            let lit = Lit { element, time, distance: since, cosine };
             outlets.add_emission(&here, material.opacity * material.emission, lit);
         }
 

@@ -28,6 +28,8 @@ pub(super) struct Walk {
     pub(super) absorption: Rgb,
     /// How long the way from the eye to where the ray starts was.
     pub(super) length: f32,
+    /// When its rays look at the scene, if anything moves there.
+    pub(super) time: f32,
 }
 
 impl Walk {
@@ -47,6 +49,11 @@ impl Travelled for Walk {
     #[inline(always)]
     fn travelled(&self) -> f32 {
         self.length
+    }
+
+    #[inline(always)]
+    fn time(&self) -> f32 {
+        self.time
     }
 }
 
@@ -84,6 +91,11 @@ impl Traced for Primary<'_> {
     }
 
     #[inline(always)]
+    fn time(&self, ray: usize) -> f32 {
+        self.traced.time(ray)
+    }
+
+    #[inline(always)]
     fn hit(&self, ray: usize) -> Option<Hit> {
         self.traced.hit(ray)
     }
@@ -105,6 +117,7 @@ impl Walked for Primary<'_> {
             // In air. (An eye inside glass is noticed when the ray leaves it.)
             absorption: Rgb::ZERO,
             length: 0.0,
+            time: self.time(ray),
         }
     }
 }

@@ -133,8 +133,7 @@ impl<'a> Waves<'a> {
     fn trace_wave(&mut self) {
         let Scratch { waiting, wave, hits, .. } = &mut *self.scratch;
         waiting.move_wave(wave);
-        hits.resize(wave.len(), None);
-        self.picture.frame.scene.tracer().intersect_batch(&wave.rays, hits);
+        wave.trace(self.picture.frame.scene, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
             let Scratch { waiting, wave, hits, scattering, shadows, .. } = &mut *self.scratch;

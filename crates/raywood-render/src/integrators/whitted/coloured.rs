@@ -18,6 +18,8 @@ struct Bringing {
     light: u32,
     /// How many surfaces were crossed.
     crossings: u32,
+    /// When the ray looks at the scene, if anything moves there.
+    time: f32,
     /// The light if nothing were in the way.
     brought: Rgb,
     /// The share that the surfaces crossed let through.
@@ -28,6 +30,8 @@ struct Bringing {
 #[derive(Default)]
 pub(super) struct ColouredShadows {
     rays: Vec<Ray>,
+    /// Memory for times.
+    times: Vec<f32>,
     bringing: Vec<Bringing>,
     hits: Vec<Option<Hit>>,
 }
@@ -44,12 +48,12 @@ impl ColouredShadows {
         self.rays.len()
     }
 
-    /// Has a ray to a light wait, which brings so much to the pixel if nothing is in the way.
+    /// Has a ray to a light wait, at its time, which brings so much to the pixel if nothing is in the way.
     #[inline]
-    pub(super) fn push(&mut self, ray: Ray, light: usize, pixel: u32, brought: Rgb) {
+    pub(super) fn push(&mut self, (ray, time): (Ray, f32), light: usize, pixel: u32, brought: Rgb) {
         self.rays.push(ray);
         let light = light as u32;
-        self.bringing.push(Bringing { pixel, light, crossings: 0, brought, share: Rgb::ONE });
+        self.bringing.push(Bringing { pixel, light, crossings: 0, time, brought, share: Rgb::ONE });
     }
 
     /// Takes all rays to the next surface, adds the light of those that meet none, and has those wait again that it lets through.
@@ -59,21 +63,26 @@ impl ColouredShadows {
         pixels: &mut TilePixels,
         counts: &mut RayCounts,
     ) {
-        let Self { rays, bringing, hits } = self;
+        let Self { rays, times, bringing, hits } = self;
         hits.resize(rays.len(), None);
-        frame.scene.tracer().intersect_batch(rays, hits);
+        times.clear();
+        if frame.scene.moves() {
+            times.extend(bringing.iter().map(|bringing| bringing.time));
+        }
+        frame.scene.tracer().intersect_batch(rays, times, hits);
         counts.shadow += rays.len() as u64;
 
         let Lights { directed, .. } = frame.lights;
         let mut left = 0;
         for number in 0..rays.len() {
-            let Bringing { pixel, light, crossings, brought, share } = bringing[number];
+            let Bringing { pixel, light, crossings, time, brought, share } = bringing[number];
             let Some(hit) = &hits[number] else {
                 pixels[pixel as usize] += brought * share;
                 continue;
             };
             let opaque = frame.options.opaque_shadows;
-            let passed = passage(frame.scene, &rays[number], hit, opaque);
+            let ray = (&rays[number], time);
+            let passed = passage(frame.scene, ray, hit, opaque);
             let Some(Passage { share: passed, origin }) = passed else { continue };
             let share = share * passed;
             let crossings = crossings + 1;
@@ -81,7 +90,7 @@ impl ColouredShadows {
                 continue;
             }
             rays[left] = Aim::at(&directed[light as usize]).ray_from(origin);
-            bringing[left] = Bringing { pixel, light, crossings, brought, share };
+            bringing[left] = Bringing { pixel, light, crossings, time, brought, share };
             left += 1;
         }
         rays.truncate(left);

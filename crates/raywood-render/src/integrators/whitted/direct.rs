@@ -6,7 +6,6 @@ use raywood_scene::Rgb;
 use super::coloured::ColouredShadows;
 use super::lit_points::{LitPoint, LitPoints, SendShadowRays, ShadowRays};
 use crate::integrators::Frame;
-use crate::lights::Lights;
 use crate::prepared::PreparedScene;
 use crate::shadows::{Aim, LightMayPass};
 use crate::stats::RayCounts;
@@ -34,6 +33,7 @@ impl DirectLight {
         self.shadows.resize_with(lights, ShadowRays::default);
         for shadows in &mut self.shadows {
             shadows.origins.clear();
+            shadows.times.clear();
             shadows.primitives.clear();
             shadows.light.clear();
         }
@@ -54,12 +54,13 @@ impl DirectLight {
     /// Sends rays from all surfaces of the wave to all lights that may reach them, light by light.
     pub(super) fn send_shadow_rays(
         &mut self,
-        lights: &Lights,
+        frame: &Frame<'_>,
         surfaces: &Surfaces,
         level: SimdLevel,
     ) {
-        for (light, shadows) in lights.directed.iter().zip(&mut self.shadows) {
-            level.run(SendShadowRays { light, surfaces, points: &self.points, shadows });
+        let (points, moves) = (&*self.points, frame.scene.moves());
+        for (light, shadows) in frame.lights.directed.iter().zip(&mut self.shadows) {
+            level.run(SendShadowRays { light, surfaces, points, moves, shadows });
         }
     }
 
@@ -83,9 +84,11 @@ impl DirectLight {
             let count = shadows.origins.len();
             let count = if fewest > 1 { count - count % WAVE } else { count };
             let (origins, primitives) = (&shadows.origins[..count], &shadows.primitives[..count]);
+            let times = &shadows.times[..count.min(shadows.times.len())];
             let aim = Aim::at(light);
             blocked.resize(count, false);
-            ask_whether_blocked(frame.scene, aim, (origins, primitives), parallel, blocked);
+            let rays = (origins, times, primitives);
+            ask_whether_blocked(frame.scene, aim, rays, parallel, blocked);
             counts.shadow += count as u64;
             for ((pixel, brought), blocked) in shadows.light[..count].iter().zip(&*blocked) {
                 // No branch, which would follow the edges of shadows.
@@ -99,9 +102,12 @@ impl DirectLight {
                     // It counts again, surface by surface.
                     counts.shadow -= 1;
                     let (pixel, brought) = shadows.light[ray];
-                    coloured.push(aim.ray_from(origin), number, pixel, brought);
+                    let time = times.get(ray).copied().unwrap_or(0.0);
+                    coloured.push((aim.ray_from(origin), time), number, pixel, brought);
                 }
             }
+            let timed = times.len();
+            shadows.times.drain(..timed);
             shadows.origins.drain(..count);
             shadows.primitives.drain(..count);
             shadows.light.drain(..count);
@@ -157,7 +163,7 @@ impl Suspects {
 fn ask_whether_blocked(
     scene: &PreparedScene<'_>,
     aim: Aim,
-    (origins, primitives): (&[Vec3], &[u32]),
+    (origins, times, primitives): (&[Vec3], &[f32], &[u32]),
     parallel: &mut Vec<Ray>,
     blocked: &mut [bool],
 ) {
@@ -165,12 +171,12 @@ fn ask_whether_blocked(
         Aim::Point(target) => {
             let end = Ray::SHORT_END;
             let tracer = scene.tracer();
-            tracer.occluded_from_surfaces(target, end, origins, primitives, blocked);
+            tracer.occluded_from_surfaces(target, end, (origins, times), primitives, blocked);
         }
         Aim::Direction(_) => {
             parallel.clear();
             parallel.extend(origins.iter().map(|origin| aim.ray_from(*origin)));
-            scene.tracer().occluded_batch(parallel, blocked);
+            scene.tracer().occluded_batch(parallel, times, blocked);
         }
     }
 }

@@ -37,6 +37,8 @@ pub(super) struct LitPoints {
 #[derive(Default)]
 pub(super) struct ShadowRays {
     pub(super) origins: Vec<Vec3>,
+    /// When they look at the scene; none if nothing moves there.
+    pub(super) times: Vec<f32>,
     /// The primitives that they start beside.
     pub(super) primitives: Vec<u32>,
     /// To which pixel the light adds how much if nothing is in the way.
@@ -83,6 +85,8 @@ pub(super) struct SendShadowRays<'a> {
     pub(super) light: &'a Light,
     pub(super) surfaces: &'a Surfaces,
     pub(super) points: &'a LitPoints,
+    /// Whether anything moves.
+    pub(super) moves: bool,
     pub(super) shadows: &'a mut ShadowRays,
 }
 
@@ -98,7 +102,7 @@ impl Vectorized for SendShadowRays<'_> {
 impl OverPoints for SendShadowRays<'_> {
     #[inline(always)]
     fn run(self, illuminate: impl Fn(Vec3) -> Illumination) {
-        let Self { surfaces, points, shadows, .. } = self;
+        let Self { surfaces, points, moves, shadows, .. } = self;
         let count = surfaces.count();
 
         // What the light brings to each point: Lambert's law.
@@ -138,6 +142,9 @@ impl OverPoints for SendShadowRays<'_> {
         }
         let lit = lit[..lit_count].iter().map(|&number| usize::from(number));
         shadows.origins.extend(lit.clone().map(|number| get(&surfaces.origins, number)));
+        if moves {
+            shadows.times.extend(lit.clone().map(|number| surfaces.time(number)));
+        }
         shadows.primitives.extend(lit.clone().map(|number| surfaces.primitive(number)));
         shadows.light.extend(lit.map(|number| (points.pixels[number], get(&brought, number))));
     }

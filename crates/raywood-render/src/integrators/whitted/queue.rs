@@ -19,12 +19,19 @@ pub(super) struct Path {
     pub(super) absorption: Rgb,
     /// How long the way from the eye to where the ray starts was.
     pub(super) length: f32,
+    /// When the ray looks at the scene, if anything moves there.
+    pub(super) time: f32,
 }
 
 impl Travelled for Path {
     #[inline(always)]
     fn travelled(&self) -> f32 {
         self.length
+    }
+
+    #[inline(always)]
+    fn time(&self) -> f32 {
+        self.time
     }
 }
 
@@ -38,8 +45,8 @@ impl Followed for TracedPrimary<'_> {
     #[inline(always)]
     fn path(&self, ray: usize) -> Path {
         // In air. (An eye inside glass is noticed when the ray leaves it.)
-        let pixel = self.primary.pixel(ray);
-        Path { pixel, holes: 0, weight: Rgb::ONE, absorption: Rgb::ZERO, length: 0.0 }
+        let (pixel, time) = (self.primary.pixel(ray), self.time(ray));
+        Path { pixel, holes: 0, weight: Rgb::ONE, absorption: Rgb::ZERO, length: 0.0, time }
     }
 }
 

@@ -106,8 +106,7 @@ impl<'a> Waves<'a> {
     /// Traces the rays of `wave`, which have the same depth, shades what they hit, and has the rays that follow wait for their turn.
     fn trace_wave(&mut self, depth: u32) {
         let Scratch { wave, hits, .. } = &mut *self.scratch;
-        hits.resize(wave.len(), None);
-        self.frame.scene.tracer().intersect_batch(&wave.rays, hits);
+        wave.trace(self.frame.scene, hits);
 
         for first in (0..self.scratch.hits.len()).step_by(WAVE) {
             let Scratch { waiting, wave, hits, surfaces, textures, direct, .. } =
@@ -145,5 +144,5 @@ fn shade(
     let Shader { frame, pixels, counts, direct, followers, goes_on } = shader;
     let shader = Shader { frame, pixels, counts, direct: &mut *direct, followers, goes_on };
     level.run(ShadeWave { shader, wave, surfaces: &mut *surfaces, memory, level });
-    direct.send_shadow_rays(frame.lights, surfaces, level);
+    direct.send_shadow_rays(frame, surfaces, level);
 }

@@ -170,7 +170,7 @@ impl Assembly {
         for triangles in scene.instances.objects() {
             self.add_object(scene, triangles, materials)?;
         }
-        for Instance { object, transform, material, tint } in scene.instances.placed() {
+        for Instance { object, transform, material, tint, .. } in scene.instances.placed() {
             let material = material.map(|id| materials.of(Some(id)));
             self.place(first + object, *tint, material, transform, places)?;
         }
@@ -208,7 +208,8 @@ impl Assembly {
             let bad = |error: TransformError| format!("the place of an instance {error}");
             transform.check().map_err(bad)?;
             let material = place.material.or(material);
-            self.placed.push(Instance { object, transform, material, tint: tint * place.tint });
+            let tint = tint * place.tint;
+            self.placed.push(Instance { object, transform, later: None, material, tint });
         }
         Ok(())
     }
