@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use raywood::{BuildPreset, SimdLevel, StructureKind, Vec3};
 use raywood_render::{
-    Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, Region, TONE_MAPS, ToneMap,
+    Aov, HeatQuantity, INTEGRATORS, Integrator, PixelFilter, Region, Shutter, TONE_MAPS, ToneMap,
 };
 use raywood_scene::closest_name;
 
@@ -219,6 +219,17 @@ pub(crate) enum Focus {
     Distance(f32),
     /// What is seen at a pixel.
     Pixel([f32; 2]),
+}
+
+/// When a shutter opens and closes, `OPEN,CLOSE`.
+pub(crate) fn shutter(text: &str) -> Result<Shutter, String> {
+    match numbers(text).as_deref() {
+        Ok(&[open, close]) if 0.0 <= open && open <= close && close <= 1.0 => {
+            Ok(Shutter { open, close })
+        }
+        _ => Err("expected two numbers from 0 to 1, the second not below the first, as in 0,0.5"
+            .to_owned()),
+    }
 }
 
 /// A distance, or a pixel `X,Y`.

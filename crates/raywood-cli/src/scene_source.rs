@@ -36,6 +36,17 @@ impl Loaded {
 const MOST_COPIED: u64 = 30_000_000;
 
 impl Loaded {
+    /// Refuses scenes in which something moves, for `what` cannot show that.
+    pub(crate) fn standing_still(self, what: &str) -> Result<Self, Failure> {
+        if self.scene.instances.moves() {
+            return Err(Failure::BadInput(format!(
+                "{}: {what} needs a scene in which nothing moves: expected no instances with `to`",
+                self.scene.name
+            )));
+        }
+        Ok(self)
+    }
+
     /// Copies instances to where they stand, for `what` cannot deal with them.
     pub(crate) fn without_instances(mut self, what: &str) -> Result<Self, Failure> {
         self.scene.flatten(MOST_COPIED).map_err(|error| {

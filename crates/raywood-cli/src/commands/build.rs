@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded =
         during_step("loading", || pool.install(|| scene_source::load(&args.scene, args.strict)))?;
     loaded.print_warnings();
-    let loaded = loaded.without_instances("a saved scene")?;
+    let loaded = loaded.standing_still("a saved scene")?.without_instances("a saved scene")?;
     let Loaded { scene, tree: saved, time: load } = loaded;
     let started = Instant::now();
     let tree = args.build.tree(&scene, saved.as_ref(), &pool)?;

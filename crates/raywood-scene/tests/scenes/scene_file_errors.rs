@@ -144,6 +144,32 @@ const BAD: &[(&str, &str, &[&str])] = &[
         &["flattens space"],
     ),
     (
+        "[[model]]\nfile = \"builtin:terrain?n=4\"\nto = { translat = [1, 0, 0] }",
+        "3:8",
+        &["`to` has no key `translat`", "did you mean `translate`?"],
+    ),
+    ("[[model]]\nfile = \"builtin:terrain?n=4\"\nto = [1, 0, 0]", "3:6", &["`to` is", "a table"]),
+    (
+        "[[model]]\nfile = \"builtin:terrain?n=4\"\nto = { scale = 0 }",
+        "3:16",
+        &["a number other than 0"],
+    ),
+    (
+        "[[model]]\nfile = \"builtin:terrain?n=4\"\nrotate = 10\nto = { rotate = 190 }",
+        "4:6",
+        &["flattens space on the way", "half a circle"],
+    ),
+    (
+        "[[model]]\nfile = \"builtin:terrain?n=4\"\n[[model.instance]]\nmatrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]\nto = { scale = 2 }",
+        "5:16",
+        &["the place is a `matrix`", "not `scale`"],
+    ),
+    (
+        "[[model]]\nfile = \"builtin:whitted\"\nto = { translate = [1, 0, 0] }",
+        "1:1",
+        &["spheres, which cannot move"],
+    ),
+    (
         "[[model]]\nfile = \"builtin:whitted\"\nscale = 2\nmatrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]",
         "3:9",
         &["`scale` has no place beside it"],

@@ -180,6 +180,54 @@ fn models_in_many_places_are_shared() {
 }
 
 #[test]
+fn models_move_to_other_places() {
+    let file = "[[model]]\nfile = \"builtin:terrain?n=8\"\nscale = 2\n";
+    let moving = |more: &str| scene(&format!("{file}{more}"));
+    let place = |scene: &Scene, number: usize, point: Vec3| {
+        let instance = &scene.instances.placed()[number];
+        [Some(instance.transform), instance.later].map(|place| place.map(|p| p.point(point)))
+    };
+
+    // However few its triangles are; what is not said stays.
+    let shown = moving("translate = [1, 2, 3]\nto = { translate = [5, 2, 3] }\n");
+    check_scene(&shown);
+    assert!(shown.instances.moves());
+    assert_eq!(shown.instances.placed().len(), 1);
+    let expected = [Vec3::new(3.0, 2.0, 3.0), Vec3::new(7.0, 2.0, 3.0)].map(Some);
+    assert_eq!(place(&shown, 0, Vec3::X), expected);
+    let bounds = shown.bounds().extent().x - moving("").bounds().extent().x;
+    assert!((bounds - 4.0).abs() < 0.1, "{bounds}");
+
+    // Some instances move, others do not; what moves as a whole comes after what moves in it.
+    let instances = "[[model.instance]]\ntranslate = [10, 0, 0]\n[[model.instance]]\nto = { translate = [0, 7, 0] }\n";
+    let shown = moving(instances);
+    assert_eq!(place(&shown, 0, Vec3::X), [Some(Vec3::new(12.0, 0.0, 0.0)), None]);
+    assert_eq!(place(&shown, 1, Vec3::X)[1], Some(Vec3::new(2.0, 7.0, 0.0)));
+    let shown = moving(&format!("to = {{ translate = [0, 0, 1] }}\n{instances}"));
+    assert_eq!(place(&shown, 0, Vec3::X)[1], Some(Vec3::new(12.0, 0.0, 1.0)));
+    assert_eq!(place(&shown, 1, Vec3::X)[1], Some(Vec3::new(2.0, 7.0, 1.0)));
+
+    // What moves nowhere stands still, and is copied.
+    assert!(moving("to = {}\n").instances.is_empty());
+    assert!(
+        moving("translate = [1, 2, 3]\nto = { translate = [1, 2, 3], scale = 2 }\n")
+            .instances
+            .is_empty()
+    );
+
+    // In a scene file that another one shows.
+    let folder = Folder::new();
+    folder.write("inner.toml", format!("{file}to = {{ translate = [4, 0, 0] }}\n"));
+    let path = folder.write(
+        "outer.toml",
+        "[[model]]\nfile = \"inner.toml\"\ntranslate = [0, 1, 0]\nto = { translate = [0, 1, 8] }",
+    );
+    let outer = load_file(&path, &LoadOptions::default()).unwrap();
+    let expected = [Vec3::new(2.0, 1.0, 0.0), Vec3::new(6.0, 1.0, 8.0)].map(Some);
+    assert_eq!(place(&outer, 0, Vec3::X), expected);
+}
+
+#[test]
 fn materials_are_as_they_are_described() {
     let shown = scene(
         "[material.gold]\ncolor = \"#ff8000\"\nmetallic = 1\nroughness = 0.25\n\

@@ -359,9 +359,12 @@ impl Args {
         }
         let other_structure = self.structure.is_some_and(|kind| kind != StructureKind::default());
         match self {
-            _ if other_structure => loaded.without_instances("another structure"),
             Self { heatmap: Some(_), .. } => loaded.without_instances("a heat map"),
             Self { show_bounds: Some(_), .. } => loaded.without_instances("a picture of bounds"),
+            _ if other_structure => {
+                let what = "another structure";
+                loaded.standing_still(what)?.without_instances(what)
+            }
             _ => Ok(loaded),
         }
     }

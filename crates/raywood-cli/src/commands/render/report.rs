@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use raywood::{StructureKind, StructureStats};
-use raywood_render::{Ended, Part, RenderOptions, RenderStats};
+use raywood_render::{Ended, Part, RenderOptions, RenderStats, Shutter};
 use raywood_scene::Scene;
 use serde_json::{Value, json};
 
@@ -91,6 +91,10 @@ impl Report<'_> {
             let (width, focus) = (2.0 * lens.radius, lens.focus);
             line("lens", format!("{width} wide, in focus at {focus}"));
         }
+        if scene.instances.moves() {
+            let Shutter { open, close } = self.options.shutter;
+            line("shutter", format!("open from {open} to {close}"));
+        }
         if let Some(Bounds { level, boxes, time }) = bounds {
             let boxes = thousands(*boxes as u64);
             line("bounds", format!("{}   {boxes} boxes of level {level}", seconds(time)));
@@ -168,6 +172,9 @@ impl Report<'_> {
             })),
             "lens": self.options.lens.map(|lens| json!({
                 "radius": lens.radius, "focus": lens.focus,
+            })),
+            "shutter": scene.instances.moves().then(|| json!({
+                "open": self.options.shutter.open, "close": self.options.shutter.close,
             })),
             "depth": args.depth,
             "threads": render.threads,

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use raywood_render::{Goal, PixelFilter, RenderOptions};
+use raywood_render::{Goal, PixelFilter, RenderOptions, Shutter};
 
-use crate::parse::{duration, noise, pixel_filter};
+use crate::parse::{duration, noise, pixel_filter, shutter};
 
 /// The options of sampling.
 #[derive(clap::Args)]
@@ -34,6 +34,12 @@ pub(crate) struct SamplingArgs {
     #[arg(long, value_name = "NAME", value_parser = pixel_filter, default_value = "tent", hide_short_help = true)]
     filter: PixelFilter,
 
+    /// When the shutter opens and closes, as 0,0.5
+    ///
+    /// Both from 0 to 1, the time in which instances move that have `to` in a scene file: from where they stand to there. Each ray from the eye has a time between the two, and all rays that follow from it have the same, so that what moves is blurred. Equal numbers show everything where it is at that time. Pictures in which nothing moves do not depend on it. Heat maps, bounds and what --focus finds are of time 0.
+    #[arg(long, value_name = "OPEN,CLOSE", value_parser = shutter, default_value = "0,1", hide_short_help = true)]
+    shutter: Shutter,
+
     /// Another seed has other noise
     #[arg(long, value_name = "N", default_value_t = 0, hide_short_help = true)]
     seed: u32,
@@ -45,6 +51,7 @@ impl SamplingArgs {
         let most = if self.goal().is_open() { 1 << 16 } else { 4 };
         options.samples = self.samples.unwrap_or(most);
         options.filter = self.filter;
+        options.shutter = self.shutter;
         options.seed = self.seed;
     }
 

@@ -58,9 +58,23 @@ impl Numbering {
 #[derive(Clone, Debug)]
 pub(super) struct Standing {
     pub(super) transform: Transform,
+    /// Where it is at time 1, if it moves.
+    pub(super) later: Option<Transform>,
     /// In place of the model's own materials.
     pub(super) material: Option<MaterialId>,
     pub(super) tint: Rgb,
+}
+
+impl Standing {
+    /// Where something is, at both times, that stands or moves in what stands here.
+    pub(super) fn moved(
+        &self,
+        (first, later): (&Transform, Option<&Transform>),
+    ) -> (Transform, Option<Transform>) {
+        let moves = later.is_some() || self.later.is_some();
+        let (own, there) = (later.unwrap_or(first), self.later.as_ref().unwrap_or(&self.transform));
+        (first.then(&self.transform), moves.then(|| own.then(there)))
+    }
 }
 
 /// A model, ready to be shown.
@@ -137,7 +151,7 @@ impl Assembly {
         Ok(())
     }
 
-    /// What stands in the model's world: an object, if that pays, else copies.
+    /// What stands in the model's world: an object, if that pays or it moves, else copies.
     fn show_world(
         &mut self,
         scene: &Rc<Scene>,
@@ -145,13 +159,14 @@ impl Assembly {
         materials: Numbering,
     ) -> Result<(), String> {
         let count = scene.instances.own_triangles(&scene.mesh.triangles);
-        if is_worth_sharing(u64::from(count), places.len() as u64) {
+        let moves = places.iter().any(|place| place.later.is_some());
+        if is_worth_sharing(u64::from(count), places.len() as u64) || (moves && count > 0) {
             let object = self.add_object(scene, 0..count, materials)?;
-            return self.place(object, Rgb::ONE, None, &Transform::IDENTITY, places);
+            return self.place(Instance::new(object, Transform::IDENTITY), places);
         }
         let copies = (count as usize).saturating_mul(places.len());
         within(self.triangle_count(), copies, MOST_TRIANGLES, "triangles")?;
-        for Standing { transform, material, tint } in places {
+        for Standing { transform, material, tint, .. } in places {
             self.world.add(&scene.mesh, 0..count, (transform, *tint), |own| {
                 Some(material.unwrap_or_else(|| materials.of(own)))
             });
@@ -170,9 +185,10 @@ impl Assembly {
         for triangles in scene.instances.objects() {
             self.add_object(scene, triangles, materials)?;
         }
-        for Instance { object, transform, material, tint, .. } in scene.instances.placed() {
-            let material = material.map(|id| materials.of(Some(id)));
-            self.place(first + object, *tint, material, transform, places)?;
+        for instance in scene.instances.placed() {
+            let material = instance.material.map(|id| materials.of(Some(id)));
+            let object = first + instance.object;
+            self.place(Instance { object, material, ..instance.clone() }, places)?;
         }
         Ok(())
     }
@@ -194,22 +210,18 @@ impl Assembly {
     }
 
     /// Instances of an object at all places of its model, in which it stands somewhere itself.
-    fn place(
-        &mut self,
-        object: u32,
-        tint: Rgb,
-        material: Option<MaterialId>,
-        in_model: &Transform,
-        places: &[Standing],
-    ) -> Result<(), String> {
+    fn place(&mut self, in_model: Instance, places: &[Standing]) -> Result<(), String> {
+        let Instance { object, transform, later, material, tint } = in_model;
         within(self.placed.len(), places.len(), MOST_PLACES, "instances")?;
         for place in places {
-            let transform = in_model.then(&place.transform);
+            let (transform, later) = place.moved((&transform, later.as_ref()));
             let bad = |error: TransformError| format!("the place of an instance {error}");
-            transform.check().map_err(bad)?;
-            let material = place.material.or(material);
-            let tint = tint * place.tint;
-            self.placed.push(Instance { object, transform, later: None, material, tint });
+            match &later {
+                None => transform.check().map_err(bad)?,
+                Some(later) => transform.check_motion(later).map_err(bad)?,
+            }
+            let (material, tint) = (place.material.or(material), tint * place.tint);
+            self.placed.push(Instance { object, transform, later, material, tint });
         }
         Ok(())
     }
@@ -226,6 +238,9 @@ impl Assembly {
         within(self.spheres.len(), copies, MOST_PLACES, "spheres")?;
         if copies == 0 {
             return Ok(());
+        }
+        if places.iter().any(|place| place.later.is_some()) {
+            return Err("the model has spheres, which cannot move: expected no `to`".to_owned());
         }
         for Standing { transform, material, .. } in places {
             let factor = even_scale(transform).ok_or(

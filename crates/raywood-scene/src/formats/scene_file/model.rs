@@ -19,7 +19,7 @@ use crate::formats::{Input, Nesting};
 use crate::load::{load_nested, read_file};
 use crate::{Environment, Material, Rgb, Scene, builtin, builtins};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "file",
     "parameters",
     "lights",
@@ -31,10 +31,11 @@ const KEYS: [&str; 11] = [
     "rotate",
     "scale",
     "matrix",
+    "to",
 ];
 
 /// The keys of a place.
-const PLACE_KEYS: [&str; 6] = ["material", "tint", "translate", "rotate", "scale", "matrix"];
+const PLACE_KEYS: [&str; 7] = ["material", "tint", "translate", "rotate", "scale", "matrix", "to"];
 
 /// What precedes the name of a built-in scene.
 const BUILTIN_PREFIX: &str = "builtin:";
@@ -86,8 +87,10 @@ impl<'a> Models<'a> {
         for instance in fields.tables("instance")? {
             let instance = instance.fields("[[model.instance]]", &PLACE_KEYS)?;
             let own = place(&instance, self.up, palette, assembly)?;
+            let (transform, later) = own.moved((&all.transform, all.later.as_ref()));
             places.push(Standing {
-                transform: all.transform.then(&own.transform),
+                transform,
+                later,
                 material: own.material.or(all.material),
                 tint: all.tint * own.tint,
             });
@@ -186,7 +189,8 @@ fn place(
 ) -> Result<Standing, LoadError> {
     let material = fields.read("material", |value| palette.number(value, assembly))?;
     let tint = fields.read("tint", |value| value.color(f32::MAX))?.unwrap_or(Rgb::ONE);
-    Ok(Standing { transform: transform::read(fields, up)?, material, tint })
+    let (transform, later) = transform::read(fields, up)?;
+    Ok(Standing { transform, later, material, tint })
 }
 
 /// Changes the materials of a name, or puts another in their place.

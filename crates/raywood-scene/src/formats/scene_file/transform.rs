@@ -1,4 +1,4 @@
-//! Where something stands: `translate`, `rotate` and `scale`, or `matrix`.
+//! Where something stands: `translate`, `rotate` and `scale`, or `matrix`; and where it moves `to`.
 
 use raywood::{Transform, Vec3};
 
@@ -8,25 +8,49 @@ use crate::error::LoadError;
 /// The keys of a place.
 pub(super) const KEYS: [&str; 4] = ["translate", "rotate", "scale", "matrix"];
 
-/// The transform of a table: first scaled, then turned, then moved. A single angle turns around the direction that is up.
-pub(super) fn read(fields: &Fields<'_>, up: Vec3) -> Result<Transform, LoadError> {
-    let transform = match fields.get("matrix") {
-        Some(matrix) => {
-            if let Some(other) = KEYS[..3].iter().find_map(|key| fields.get(key)) {
-                let message = format!("`matrix` is given: `{}` has no place beside it", other.key);
+/// The transform of a table: first scaled, then turned, then moved. A single angle turns around the direction that is up. What the table does not say is as in `own`, if that is given.
+fn transform(
+    fields: &Fields<'_>,
+    own: Option<&Fields<'_>>,
+    up: Vec3,
+) -> Result<Transform, LoadError> {
+    let other = KEYS[..3].iter().find_map(|key| fields.get(key));
+    let transform = match (fields.get("matrix"), other) {
+        (Some(_), Some(other)) => {
+            let message = format!("`matrix` is given: `{}` has no place beside it", other.key);
+            return Err(other.error(message));
+        }
+        (Some(matrix), None) => self::matrix(matrix)?,
+        (None, other) => match (own.and_then(|own| own.get("matrix")), other) {
+            (Some(_), Some(other)) => {
+                let message =
+                    format!("the place is a `matrix`: expected one here too, not `{}`", other.key);
                 return Err(other.error(message));
             }
-            self::matrix(matrix)?
-        }
-        None => {
-            let scaled = fields.read("scale", scaling)?.unwrap_or_default();
-            let turned = fields.read("rotate", |value| rotation(value, up))?.unwrap_or_default();
-            let moved = fields.read("translate", Value::vector)?.unwrap_or(Vec3::ZERO);
-            scaled.then(&turned).then(&Transform::translation(moved))
-        }
+            (Some(matrix), None) => self::matrix(matrix)?,
+            (None, _) => {
+                let of = |key| fields.get(key).or_else(|| own?.get(key));
+                let scaled = of("scale").map(scaling).transpose()?.unwrap_or_default();
+                let turned = of("rotate").map(|value| rotation(value, up)).transpose()?;
+                let moved = of("translate").map(Value::vector).transpose()?.unwrap_or(Vec3::ZERO);
+                scaled.then(&turned.unwrap_or_default()).then(&Transform::translation(moved))
+            }
+        },
     };
     let check = transform.check().map_err(|error| fields.error(format!("the place {error}")));
     check.map(|()| transform)
+}
+
+/// The transform of a table, and that of what it moves `to`, if it moves.
+pub(super) fn read(
+    fields: &Fields<'_>,
+    up: Vec3,
+) -> Result<(Transform, Option<Transform>), LoadError> {
+    let first = transform(fields, None, up)?;
+    let Some(to) = fields.get("to") else { return Ok((first, None)) };
+    let later = transform(&to.fields("`to`", &KEYS)?, Some(fields), up)?;
+    first.check_motion(&later).map_err(|error| to.error(format!("the place {error}")))?;
+    Ok((first, Some(later).filter(|later| *later != first)))
 }
 
 fn scaling(value: Value<'_>) -> Result<Transform, LoadError> {
