@@ -234,6 +234,11 @@ fn bad_input_is_exit_code_2_and_one_clear_line() {
         ("render triangle.obj --eye 0,0,0 --target 0,0,0", "eye"),
         ("render triangle.obj --camera 3", "none"),
         ("render builtin:forest --structure kd-tree", "show 5"),
+        (
+            "render builtin:mill --structure kd-tree",
+            "another structure needs a scene in which nothing moves",
+        ),
+        ("build builtin:mill -o mill.rwood", "a saved scene needs a scene in which nothing moves"),
         ("info builtin:forest --structure octree", "at most 30000000 are copied"),
         ("render triangle.obj --show-bounds 7", "there is no level 7: the bvh-wide has level"),
         ("info missing.glb", "missing.glb: no such file"),

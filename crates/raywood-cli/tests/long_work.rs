@@ -188,6 +188,39 @@ fn films_of_other_seeds_add_up() {
 }
 
 #[test]
+fn films_of_what_moves_go_on_to_the_same_bytes() {
+    let folder = folder("motion");
+    let picture = "render builtin:mill --size 150x100 -i path -n 40 --shutter 0.1,0.7";
+    assert_done(&run(&folder, &format!("{picture} --checkpoint whole.film -o whole.png")));
+    let parts =
+        format!("{picture} --checkpoint parts.film --resume --checkpoint-every 0.01 -o parts.png");
+    let mut child = start(&folder, &parts);
+    wait_for("a film", || folder.join("parts.film").exists());
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    assert_done(&run(&folder, &parts));
+    assert!(bytes(&folder, "parts.film") == bytes(&folder, "whole.film"));
+    assert!(bytes(&folder, "parts.png") == bytes(&folder, "whole.png"));
+
+    // Another shutter, another picture.
+    let simple = "render builtin:mill --size 96x32 -n 4";
+    for (name, tile, shutter) in
+        [("1", 1, "0,0.5"), ("2", 2, "0,0.5"), ("3", 3, "0,0.5"), ("other", 3, "0,0.25")]
+    {
+        let film = format!("--tile {tile}/3 --checkpoint {name}.film");
+        assert_done(&run(&folder, &format!("{simple} --shutter {shutter} {film}")));
+    }
+    assert_done(&run(&folder, "merge 1.film 2.film 3.film -o merged.film"));
+    let refused = run(&folder, "merge 1.film 2.film other.film -o none.film");
+    assert_eq!(code(&refused), 2);
+    let expected = "--shutter is 0,0.25 in it, 0,0.5 in 1.film";
+    assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));
+    let refused = run(&folder, &format!("{simple} --checkpoint merged.film --resume"));
+    let expected = "--shutter is 0,0.5 in it, not given now";
+    assert!(stderr(&refused).contains(expected), "{}", stderr(&refused));
+}
+
+#[test]
 fn films_of_something_else_are_refused_by_what_differs() {
     let folder = folder("refused");
     let simple = "render builtin:whitted --size 64x40 -n 2";

@@ -5,6 +5,7 @@
 mod error;
 mod forest;
 mod hall;
+mod mill;
 pub mod modelling;
 mod sphereflake;
 mod terrain;
@@ -19,7 +20,7 @@ pub const DEFAULT_BUILTIN: &str = "hall";
 
 /// All built-in scenes, the default one first.
 const BUILTINS: &[Builtin] =
-    &[hall::ENTRY, whitted::ENTRY, sphereflake::ENTRY, terrain::ENTRY, forest::ENTRY];
+    &[hall::ENTRY, whitted::ENTRY, sphereflake::ENTRY, terrain::ENTRY, forest::ENTRY, mill::ENTRY];
 
 /// A scene made by code.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,7 @@ use modelling::{Part, is_closed, signed_volume};
 /// Every scene at a small size.
 fn small_scenes() -> Vec<Scene> {
     let queries =
-        ["hall?detail=1", "whitted", "sphereflake?depth=3", "terrain?n=64", "forest?n=60"];
+        ["hall?detail=1", "whitted", "sphereflake?depth=3", "terrain?n=64", "forest?n=60", "mill"];
     assert_eq!(queries.len(), builtins().len(), "a scene is missing from this list");
     queries.map(|query| builtin(query).unwrap()).into()
 }
@@ -107,7 +107,13 @@ fn glass_is_closed_with_its_front_outside() {
 
 #[test]
 fn the_same_request_makes_the_same_scene_on_any_number_of_threads() {
-    for query in ["hall?detail=1", "terrain?n=100&seed=3", "sphereflake?depth=2", "forest?n=9"] {
+    for query in [
+        "hall?detail=1",
+        "terrain?n=100&seed=3",
+        "sphereflake?depth=2",
+        "forest?n=9",
+        "mill?turn=9",
+    ] {
         let make = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| builtin(query)).unwrap()
@@ -216,4 +222,28 @@ fn refusals_are_one_line_and_say_what_exists() {
     }
     assert!(builtin("whitted?").is_ok());
     assert!(builtin("terrain?&seed=1&").is_ok());
+}
+
+#[test]
+fn sails_turn_as_far_as_they_are_asked_to() {
+    let moving = |query: &str| {
+        let scene = builtin(query).unwrap();
+        let placed = scene.instances.placed().to_vec();
+        placed.into_iter().filter(|instance| instance.later.is_some()).collect::<Vec<_>>()
+    };
+    assert!(moving("mill?turn=0").is_empty());
+    for (query, degrees) in [("mill", 16.0f32), ("mill?turn=60", 60.0)] {
+        let sails = moving(query);
+        assert_eq!(sails.len(), 3);
+        for sail in sails {
+            // Where the end of a sail goes from, and to, around the hub.
+            let [first, later] = [sail.transform, sail.later.unwrap()];
+            let spar = raywood::Vec3::new(0.0, 7.0, 0.0);
+            let (from, to) = (first.vector(spar), later.vector(spar));
+            let cosine = from.dot(to) / (from.length() * to.length());
+            assert!((cosine - degrees.to_radians().cos()).abs() < 1e-4, "{query}");
+            // Counter-clockwise as seen from before the mill.
+            assert!(from.cross(to).dot(first.vector(raywood::Vec3::Z)) > 0.0);
+        }
+    }
 }
