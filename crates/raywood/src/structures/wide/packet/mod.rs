@@ -38,7 +38,6 @@ use groups::Groups;
 use kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
 use triangles::{TRIANGLES, Triangles};
 use waiting::Waiting;
-use work::most_work;
 
 /// How many rays a packet has at most.
 pub(super) const RAYS: usize = 256;
@@ -77,9 +76,12 @@ pub(super) struct Packet {
     is_later: bool,
     /// Which ray of the slice each one is.
     numbers: [[u8; GROUP]; GROUP],
-    /// How much [work] each group was, and how much it may be.
+    /// How much [work] each group was, and how much it may be, as much for each ray.
     work: [f32; GROUP],
     most_work: [f32; GROUP],
+    most_work_per_ray: f32,
+    /// Whether half of the rays of the last packet or more were given up.
+    gave_up: bool,
     /// The rays of each group that must be traced alone after all.
     alone: [u32; GROUP],
     /// The rays of each group that are in the packet.
@@ -188,6 +190,10 @@ pub(super) fn any<S: Simd, R: Source, const FAST: bool>(
             }
             _ => packet.trace::<S, R, Blocked, FAST>(simd, piece, stack),
         }
+        // With `FAST` answers at silhouettes depend on who finds them, and must not on what came before, which differs with the number of threads.
+        if !FAST {
+            packet.end_work();
+        }
         packet.finish_any(simd, occluded, rest, piece.first);
         packet.is_later = true;
     }
@@ -215,6 +221,8 @@ impl Packet {
             numbers: [[0; GROUP]; GROUP],
             work: [0.0; GROUP],
             most_work: [0.0; GROUP],
+            most_work_per_ray: 0.0,
+            gave_up: false,
             alone: [0; GROUP],
             members: [0; GROUP],
             pairs: [0; 1 + (TRIANGLES + 1) * GROUP],
@@ -396,7 +404,7 @@ impl Packet {
             self.groups.least[group] = nearest.least();
             if K::ANY {
                 let left = nearest.less(simd.splat16(f32::INFINITY));
-                self.most_work[group] = most_work(left.count_ones());
+                self.most_work[group] = self.most_work_of(left.count_ones());
             }
         }
         self.groups.look_again::<S, K>(simd);

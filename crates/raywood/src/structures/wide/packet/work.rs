@@ -10,6 +10,9 @@ use crate::simd::{Float, Simd};
 /// it groups are given up that would soon have been done.
 const MOST_WORK: f32 = 18.0;
 
+/// The same in a packet after one that gave up half of its rays or more: as a rule such a packet is followed by another.
+const MOST_WORK_AFTER_SUCH: f32 = 9.0;
+
 /// What a node's boxes are.
 const NODE: f32 = 6.0;
 
@@ -18,21 +21,33 @@ const LEAVES: f32 = 9.0;
 /// See [`LEAVES`].
 const TRIANGLE: f32 = 0.5;
 
-/// How much work a group may be of which so many rays have not found what they look for.
-#[inline(always)]
-pub(super) fn most_work(rays: u32) -> f32 {
-    MOST_WORK * rays as f32
-}
-
 impl Packet {
     /// Nothing was done yet.
     #[inline(always)]
     pub(super) fn begin_work(&mut self) {
         self.work = [0.0; GROUP];
         self.alone = [0; GROUP];
-        for (most, members) in self.most_work.iter_mut().zip(&self.members) {
-            *most = most_work(members.count_ones());
+        self.most_work_per_ray = if self.gave_up { MOST_WORK_AFTER_SUCH } else { MOST_WORK };
+        for group in 0..GROUP {
+            self.most_work[group] = self.most_work_of(self.members[group].count_ones());
         }
+    }
+
+    /// How much work a group may be of which so many rays have not found what they look for.
+    #[inline(always)]
+    pub(super) fn most_work_of(&self, rays: u32) -> f32 {
+        self.most_work_per_ray * rays as f32
+    }
+
+    /// All was done that looks for any hits: remembers for the next packet whether half of the rays or more were given up.
+    #[inline(always)]
+    pub(super) fn end_work(&mut self) {
+        let (mut given_up, mut all) = (0, 0);
+        for (alone, members) in self.alone.iter().zip(&self.members) {
+            given_up += alone.count_ones();
+            all += (alone | members).count_ones();
+        }
+        self.gave_up = 2 * given_up >= all;
     }
 
     /// Some groups meet a node.
