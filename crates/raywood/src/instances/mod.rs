@@ -189,7 +189,9 @@ impl<B: Traceable> Tlas<B> {
     /// How much memory the scene takes besides its objects, in bytes.
     pub fn bytes(&self) -> usize {
         let Built { placements, tree, .. } = &self.built;
-        tree.bytes() + size_of_val(&placements[..]) + size_of_val(&self.instances[..])
+        let moving = placements.iter().filter(|place| place.motion.is_some()).count();
+        let lists = size_of_val(&placements[..]) + size_of_val(&self.instances[..]);
+        tree.bytes() + lists + moving * size_of::<motion::Motion>()
     }
 
     /// Which instance of this scene a hit's [`instance`](Hit::instance) belongs to, and the number that it has in the object there: 0 in one that is no scene.
