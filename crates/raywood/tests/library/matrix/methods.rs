@@ -58,6 +58,14 @@ const ELSEWHERE: &[&str] = &[
     // `intersect_with` is asked with masks.
     "intersect_masked",
     "occluded_masked",
+    // `motion.rs` compares scenes at times with scenes that stand still.
+    "intersect_at",
+    "intersect_batch_at",
+    "intersect_batch_at_serial",
+    "occluded_at",
+    "occluded_batch_at",
+    "occluded_batch_at_serial",
+    "surface_point_at",
     // `solid.rs` sums angles.
     "winding_number",
     "winding_number_batch",
@@ -81,6 +89,7 @@ const NO_QUERIES: &[&str] = &[
     "validate",
     "visit_nodes",
     "locate",
+    "moves",
     "nodes",
     "primitive_indices",
     "simd_level",
