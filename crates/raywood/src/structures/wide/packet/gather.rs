@@ -5,7 +5,7 @@ use super::kind::{Blocked, BlockedParallel, Closest, Kind, Reflected};
 use super::meeting::{Meeting, NEARLY_ONE};
 use super::triangles::ROUNDING;
 use super::waiting::Waiters;
-use super::{GROUP, Groups, NONE, Packet, RAYS};
+use super::{GROUP, Groups, LIMIT_ERROR, NONE, Packet, RAYS};
 use crate::Ray;
 use crate::simd::{Float, Simd};
 use crate::structures::wide::WideBvh;
@@ -106,7 +106,7 @@ impl Packet {
                     let x = dx.mul_add(length, ox) - origin[0];
                     let y = dy.mul_add(length, oy) - origin[1];
                     let z = dz.mul_add(length, oz) - origin[2];
-                    ([x, y, z], length, length - end)
+                    ([x, y, z], length, length.mul_add(simd.splat16(LIMIT_ERROR), length - end))
                 }
             };
             let z = d[z_axis] * z_turn;
@@ -158,7 +158,7 @@ impl Packet {
                 Some(Common::Target) => scale,
                 None => scale / length,
             };
-            let limit = limit * simd.splat16(1.0 - 1.0 / (1 << 20) as f32);
+            let limit = limit * simd.splat16(1.0 - LIMIT_ERROR);
             let limit = never.replaced(members, limit);
             self.nearest[group] = limit.to_array();
             self.primitives[group] = [f32::from_bits(NONE); GROUP];

@@ -3,7 +3,7 @@
 use super::kind::Kind;
 use super::leaving::{Leaving, Plane};
 use super::triangles::{GREATEST_VOLUME, Triangles};
-use super::{ALL, GROUP, NONE, Packet, Piece, TOLERANCE};
+use super::{ALL, GROUP, LIMIT_ERROR, NONE, Packet, Piece, TOLERANCE};
 use crate::simd::{Float, Simd, dispatch_on};
 use crate::structures::wide::node::Reference;
 use crate::structures::wide::source::Source;
@@ -62,6 +62,9 @@ impl Packet {
         let more = depth + error_of_depth;
         if K::ANY {
             let less = depth - error_of_depth;
+            // Limits are lower than in truth by up to twice their error, so that nothing is left out.
+            let less =
+                if K::PARALLEL { less } else { less * simd.splat16(1.0 - 2.0 * LIMIT_ERROR) };
             let possible = simd.splat16(-error).less_or_equal(least) & nearest.less(more);
             let certain = simd.splat16(certainly).less(least)
                 & nearest.less(less)

@@ -96,6 +96,9 @@ const TOLERANCE: f32 = 1.0 / 4096.0;
 /// The same where depths need not be known, only whether they are less than another one.
 const LARGE_TOLERANCE: f32 = 1.0 / 64.0;
 
+/// By which share of itself one over the depth at which a ray starts or ends may be off.
+const LIMIT_ERROR: f32 = 1.0 / (1 << 20) as f32;
+
 /// Sixteen bits.
 const ALL: u32 = 0xffff;
 
