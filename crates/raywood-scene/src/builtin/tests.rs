@@ -192,11 +192,11 @@ fn refusals_are_one_line_and_say_what_exists() {
         (
             "terain?n=8",
             "there is no built-in scene 'terain', did you mean 'terrain'? (there are: hall, whitted, sphereflake, \
-             terrain, forest)",
+             terrain, forest, mill)",
         ),
         (
             "",
-            "there is no built-in scene '' (there are: hall, whitted, sphereflake, terrain, forest)",
+            "there is no built-in scene '' (there are: hall, whitted, sphereflake, terrain, forest, mill)",
         ),
         (
             "terrain?sed=8",
